@@ -14,9 +14,9 @@ from benchmarks.cortex import Compiled, Counts, measure, versions
 from benchmarks.measure import Finding, Size
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, source_text
-from nrs_design.exporters.formats.vectors import make_vectors
+from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 
@@ -60,13 +60,13 @@ def _count(file: Path, count: int) -> tuple[Counts, NDArray[np.bool_]]:
     law = shipped_law(designed.spec, designed.design, PERIOD)
     # What the comments of its C say of a proof is not compiled.
     record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
-    names, vectors = CNames(record.spec.name), make_vectors(law, count)
+    names, cases = CNames(record.spec.name), draw_cases(law, count)
     texts = header_text(record, law, names), source_text(record, law, names)
-    rows = vectors.rows[:, : bool(law.modes) + len(law.inputs) + len(law.states)]
+    rows = cases.rows[:, : bool(law.modes) + len(law.inputs) + len(law.states)]
     compiled = Compiled(names.spec, *texts, names.lower, rows, len(law.states))
     with TemporaryDirectory() as folder:
         found = measure(Path(folder), compiled)
-    return found, vectors.rows[:, vectors.columns.index("valid")] == 1
+    return found, cases.rows[:, cases.columns.index("valid")] == 1
 
 
 def _words(found: Counts, valid: NDArray[np.bool_]) -> str:

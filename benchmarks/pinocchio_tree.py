@@ -13,8 +13,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from nrs_design.robot.models import Leg, Robot, posture
 from nrs_design.robot.models.body import Body
+from nrs_design.robot.models.geometry import posture
+from nrs_design.robot.models.robot import Leg, Robot
 
 Array = NDArray[np.float64]
 X, Y, Z = np.eye(3)

@@ -9,8 +9,10 @@ import pinocchio as pin
 
 from benchmarks.measure import Comparison, Size, time_side_by_side
 from benchmarks.pinocchio_tree import Array, Tree
-from nrs_design.robot.models import build_robot, inverse_dynamics, posture
+from nrs_design.robot.models.dynamics import inverse_dynamics
+from nrs_design.robot.models.geometry import posture
 from nrs_design.robot.models.motion import joint_driven
+from nrs_design.robot.models.robot import build_robot
 from nrs_design.spec import RobotSpec, load_spec
 
 SPEC = Path(__file__).parents[1] / "specs" / "robots" / "neuroboscope.nrs.yaml"

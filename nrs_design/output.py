@@ -25,14 +25,11 @@ C_MONITOR, C_MONITOR_HEADER = (
     b"/* nrs-design C header of a monitor\n",
 )
 CMAKE = b"# nrs-design CMake file\n"
-VECTORS = b'{\n  "schema": "nrs-design/vectors/'
-VECTOR_TABLE = b"# nrs-design vectors\n"
 # The first entry of the archive, which is stored as it is, and always the same.
 FMU = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\x8f*\x87r\x0f\x00\x00\x00\x0f\x00\x00\x00"
     b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
 )
-VECTOR_TEST = b'"""nrs-design test of conformance vectors'
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
 # What stands beside a page.

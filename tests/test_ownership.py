@@ -93,7 +93,7 @@ SHA = 64 * "a"
     [
         f"/* nrs-design C header\n * spec: mine, sha256 {SHA}\n",
         f"/* nrs-design C header\n * spec: mine, sha256\n *   {SHA}\n",
-        f"# nrs-design vectors\n# spec: mine, sha256 {SHA}\n",
+        f"# nrs-design CMake file\n# spec: mine, sha256 {SHA}\n",
         '{\n  "schema": "nrs-design/export/1",\n  "spec": {\n    "name": "mine",\n',
         "MATLAB 5.0 MAT-file, nrs-design export of mine      ",
     ],

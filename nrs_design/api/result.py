@@ -123,7 +123,7 @@ def drawn(sections: Iterable[Section], first: str = "") -> Figures:
 
 def evidence_drawings(certification: Certification) -> Figures:
     """Return the figures of what was shown; a run beside its bound comes first."""
-    from nrs_design.reporting.sections.evidence import evidence_sections
+    from nrs_design.reporting.evidence import evidence_sections
 
     return drawn(evidence_sections(certification), "run")
 

@@ -129,7 +129,7 @@ def certify_switching(
             say(f"  {line}")
         if any(asked.values()):
             # Reports are slow to load, and a bare proof says nothing that only they can.
-            from nrs_design.reporting.margins import margin_lines
+            from nrs_design.reporting.remedies import margin_lines
 
             for line in margin_lines(margins, loaded.spec):
                 say(f"  {line}")
@@ -178,7 +178,7 @@ def _write(result: Result, path: Path | None) -> Path | None:
 def _next_steps(result: Result, **asked: bool) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
-    from nrs_design.reporting.next_steps import next_steps
+    from nrs_design.reporting.remedies import next_steps
 
     return next_steps(result, **asked, spec=result.loaded.path)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -11,7 +10,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import Budget, Memory, SpecFile
-from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
 
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
 PANEL = "Gradient iteration"
+COLUMNS = ("method", "coordinates", "order", "outcome", "updates", "proved rate", "condition of Q")
 
 
 @command("compare-methods")
@@ -50,9 +50,6 @@ def compare_methods(
     ] = 20_000,
     budget: Budget = None,
     memory: Memory = None,
-    figure: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw v against updates as a PNG image.")
-    ] = None,
 ) -> Answer:
     """Look for a common quadratic function by LMI and by the Liberzon-Tempo gradient iteration.
 
@@ -62,21 +59,15 @@ def compare_methods(
 
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.output import PNG, check_place
     from nrs_design.pipeline.certification import Overrides, search_limits
     from nrs_design.pipeline.runs import run_comparison
 
-    if figure is not None:
-        check_place(figure, PNG)
     loaded = take_spec(spec)
     gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"comparing on {loaded.spec.name}") as step:
         system, runs = run_comparison(loaded, limits, step)
-    if figure is not None:
-        _draw(runs, figure)
-        note(f"figure written to {figure}")
     verdicts = [str(run.certification.verdict) for run in runs]
     best = next((v for v in ("refuted", "proved") if v in verdicts), "inconclusive")
     return Answer(
@@ -115,17 +106,24 @@ def _summary(
 
 
 def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]) -> None:
-    from nrs_design.reporting.figures.methods import COLUMNS, cells_of
-
-    rows = [[*cells_of(run), f"{1e3 * run.seconds:.1f}"] for run in runs]
+    rows = [[*_cells(run), f"{1e3 * run.seconds:.1f}"] for run in runs]
     modes = len(system.modes)
     print_table(f"{loaded.spec.name}: {modes} modes", [*COLUMNS, "time\nms"], rows)
     say("Rates are proved; the condition number of Q is for the states of the modes.")
 
 
-def _draw(runs: tuple[MethodRun, ...], path: Path) -> None:
-    from nrs_design.output import PNG, write_output
-    from nrs_design.reporting.figures.methods import draw_histories
-    from nrs_design.reporting.images import to_png
+def _cells(run: MethodRun) -> tuple[str, ...]:
+    """Write one run in `COLUMNS`."""
+    from nrs_design.proof.evidence.fields import rate_words
 
-    write_output(path, to_png(draw_histories(runs)), replaces=PNG)
+    evidence, system = run.certification.evidence, run.certification.system
+    rate = None if evidence is None else evidence.proved_rate(system)
+    return (
+        str(run.method),
+        str(run.coordinates or ""),
+        str(run.order or ""),
+        run.outcome,
+        "" if run.updates is None else str(run.updates),
+        "none" if rate is None else rate_words(rate, system.time),
+        "" if run.condition is None else f"{run.condition:.3g}",
+    )

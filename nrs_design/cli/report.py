@@ -61,7 +61,7 @@ def report(
     from nrs_design.pipeline.runs import run_certification, run_recorded
     from nrs_design.pipeline.scenarios import judged_if_stable
     from nrs_design.reporting import build_report
-    from nrs_design.reporting.next_steps import next_steps
+    from nrs_design.reporting.remedies import next_steps
 
     loaded, day = take_spec(spec), date.date() if date else None
     place = _place(loaded, out)

@@ -36,8 +36,8 @@ def verify(
         Path | None,
         typer.Option(
             metavar="PLACE",
-            help="Folder of exported files, or one of them (C, tests, vectors, monitor, CMake, "
-            "FMU): they must be what is exported with the certificate.",
+            help="Folder of exported files, or one of them (C, monitor, CMake, FMU): they must be "
+            "what is exported with the certificate.",
         ),
     ] = None,
 ) -> Answer:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
@@ -19,8 +20,10 @@ from nrs_design.spec import InteractionDesignSpec
 LARGEST_BYTES = 2**22
 # First line of every exported file, and of the sources in a model for co-simulation.
 _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
-# How much of a line is shown, around the first byte that differs.
-_BEFORE, _AFTER = 48, 32
+# The law and its monitor, not the self-test, which a robot may do without.
+_LAW = re.compile(r"(?<!_test)\.[hc]$")
+# How much of a line is shown.
+_SHOWN = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ def compare_deployed(
     told = [f"{file.name}: {each}" for file in known for each in _differs(file, exported)]
     if whole:
         missing = sorted(exported.keys() - {file.name for file in known})
-        told += [f"{name}: it is missing" for name in missing if name.endswith((".h", ".c"))]
+        told += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
     # The certificate is read, not compared.
     aside = {*known, place / f"{spec.name}.cert.json"}
     others = tuple(file for file in files if file not in aside)
@@ -83,17 +86,13 @@ def compare_deployed(
 
 def _export(spec: InteractionDesignSpec, certificate: Certificate, place: Path) -> Export:
     """Return what is exported with a certificate of a sampled loop."""
-    if certificate.system.sample_time is None:
+    system = certificate.system
+    if system.sample_time is None or (system.clock is not None and system.clock.is_round):
+        about = "continuous time" if system.sample_time is None else "two periods"
         raise NrsDesignError(
-            "holds a law in steps, and the certificate is about continuous time",
+            f"holds a law in steps of one period, and the certificate is about {about}",
             path=place,
-            remedy="name a certificate of a spec with `sampling`",
-        )
-    if certificate.system.clock is not None and certificate.system.clock.is_round:
-        raise NrsDesignError(
-            "holds a law of one period, and the certificate is about two",
-            path=place,
-            remedy="name a certificate of a spec without `outer_period`",
+            remedy="name a certificate of a spec with `sampling`, and without `outer_period`",
         )
     design = design_from_gains(spec, certificate.gains)
     record = build_record(design, certificate, spec)
@@ -112,31 +111,20 @@ def _differs(file: Path, exported: Mapping[str, bytes]) -> Iterator[str]:
             f"with {theirs}, or export it again)"
         )
         return
-    pairs = enumerate(zip(found, wanted, strict=False))
-    at = next((k for k, (one, other) in pairs if one != other), min(len(found), len(wanted)))
     if b"\0" in wanted:
-        yield (
-            f"it differs from byte {at + 1} on (a library in it must be what the compiler here "
-            "makes of its sources)"
-        )
+        yield "it differs (a library in it must be what the compiler here makes of its sources)"
         return
-    line = wanted.count(b"\n", 0, at) + 1
-    has, should = _around(found, at), _around(wanted, at)
-    yield f"line {line}: it has {has}, and the export has {should}"
+    lines = enumerate(zip_longest(found.split(b"\n"), wanted.split(b"\n"), fillvalue=b""), 1)
+    number, differing = next((n, pair) for n, pair in lines if pair[0] != pair[1])
+    # Quoted: a line break or an escape is seen.
+    has, should = (repr(line[:_SHOWN].decode("ascii", "backslashreplace")) for line in differing)
+    yield f"line {number}: it has {has}, and the export has {should}"
 
 
 def _release(content: bytes) -> str:
     """Return the release that wrote a file, as it says; empty if it says none."""
     found = _RELEASE.search(content)
     return "" if found is None else found[1].decode()
-
-
-def _around(content: bytes, at: int) -> str:
-    """Return a line as far as it is near a byte, quoted: a line break or an escape is seen."""
-    start = max(content.rfind(b"\n", 0, at) + 1, at - _BEFORE)
-    end = content.find(b"\n", at)
-    line = content[start : min(end if end >= 0 else len(content), at + _AFTER)]
-    return repr(line.decode("ascii", "backslashreplace")) if line else "nothing"
 
 
 def _read(file: Path) -> bytes:

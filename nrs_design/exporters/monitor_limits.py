@@ -1,4 +1,13 @@
-"""Limits of a running loop in single precision, as `audit` has them for a log."""
+"""Limits of a running loop in single precision, as `audit` has them for a log.
+
+The region is that of a regional certificate, which proves decay from ``w' Q w <= 1`` although the
+command saturates. The monitor knows some entries of w from the law, and encloses the others by what
+it reads: the deflection by torque and stiffness, older torques by older angles, and the speed by
+how far the joint went in the last period under the command that it sent. With the motor of the
+proof, ``E = exp(-T/tau)`` and ``a = E/(tau (1 - E))``, that is ``omega = a way + Km (1 - a T) u``.
+For an entry within h of c, every row of ``U`` times w is at most ``|U c| + |U| h``, and ``U'U`` is
+more than Q by `ROOM`, which is kept for what single precision rounds.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +15,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 
-from nrs_design.controllers.float32 import float32_not_above, to_float32
+import numpy as np
+
+from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sector import Sector, sector_of
+from nrs_design.controllers.taylor import exponential_between
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.exporters.region import MonitoredRegion, region_of
+from nrs_design.proof.evidence import Shows
+from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.build_plant import build_environments
+from nrs_design.spec.controllers import contact_names
 
 # Longer than any processor runs.
 FOREVER = 2**32 - 1
@@ -96,3 +112,90 @@ def _left_out(
         "Dead time of the motion: `nrs-design audit` fits it to a log. Noise of the torque: its "
         "largest value counts as it is read.",
     )
+
+
+# Margin for roundings, over V. Entries and rows lose some 2^-24 of themselves.
+ROOM = Fraction(1, 64)
+_NONE = (
+    "the certificate has no `initial_force`, from which motions decay although commands saturate"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MonitoredRegion:
+    """Numbers of the test, of single precision."""
+
+    # Shape (n, n). The U, upper triangular.
+    rows: tuple[tuple[Fraction, ...], ...]
+    # For each entry of w how it is known: ``law.name``, ``error``, ``speed``, ``torque 1`` of the
+    # sample before, or ``deflection``.
+    entries: tuple[str, ...]
+    yields: tuple[Fraction, Fraction]  # One over the largest and the least stiffness, rad/(N m)
+    stiffness: tuple[Fraction, Fraction]  # The least and the largest, N m/rad
+    ways: tuple[Fraction, Fraction]  # The least and the largest a, in 1/s
+    gains: tuple[Fraction, Fraction]  # The least and the largest Km
+    samples: int  # How many angles before the present one are needed
+
+
+def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
+    """Return the region of the proof, or why it is not monitored; the law is the one that ships."""
+    certificate, spec, designed = export.certificate, export.spec, export.designed
+    if certificate is None or spec is None or designed is None:
+        return _NONE
+    shown = (item for item in certificate.statements if item.shows is Shows.REGION)
+    evidence, system = next(shown, None), certificate.system
+    if evidence is None or evidence.quadratic is None or system.sample_time is None:
+        return _NONE
+    if spec.sampling is None or spec.sampling.jitter is not None:
+        return "periods are not of one length, and the speed is not known from the way of one"
+    if max(spec.late) > 0:
+        return "commands take effect late, and the speed is not known from the way of a period"
+    stored = {value.stored: f"law.{value.name}" for value in law.states if value.stored}
+    names = {value.name for value in law.states}
+    known = stored | {"omega [rad/s]": "speed", "delta [rad]": "deflection"}
+    known |= {"e [rad]": "error"} if "reference" in names else {}
+    oldest = export.shipped().delay or (0, 0)
+    known |= {f"F {j} before [N*m]": f"torque {j}" for j in range(1, oldest[1] + 1)}
+    if spec.offset != "none" or any(name not in known for name in system.states):
+        return "a state of it counts from a rest that the monitor does not know"
+    if any(c.law.commands == "position" for c in designed.design.controllers):
+        return "under position and force control it counts from a rest that it does not know"
+    rows = _factor(*evidence.quadratic)
+    if rows is None:
+        return "single precision loses it"
+    T, motor = system.sample_time, designed.plant.actuator_ranges
+    ways = [
+        E / (tau * (1 - E))
+        for tau in (motor.time_constant.low, motor.time_constant.high)
+        for E in exponential_between(-T / tau)
+    ]
+    touched = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
+    found = [e.stiffness for e in build_environments(spec) if e.name in touched]
+    low, high = min(k.low for k in found), max(k.high for k in found)
+    return MonitoredRegion(
+        rows,
+        tuple(known[name] for name in system.states),
+        (float32_not_above(1 / high), float32_not_below(1 / low)),
+        (float32_not_above(low), float32_not_below(high)),
+        (float32_not_above(min(ways)), float32_not_below(max(ways))),
+        (float32_not_above(motor.gain.low), float32_not_below(motor.gain.high)),
+        max(1, oldest[1]),
+    )
+
+
+def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...] | None:
+    """Return U with ``U'U > Q`` of single precision, checked exactly; None where none is found."""
+    wanted = [[Fraction(v, 2**power) for v in row] for row in form]
+    scale = np.array([float(row[i]) ** 0.5 for i, row in enumerate(wanted)])
+    unit = np.array([[float(v) for v in row] for row in wanted]) / np.outer(scale, scale)
+    U = np.linalg.cholesky(unit * float(1 + ROOM)).T * scale
+    rows = tuple(tuple(to_float32(Fraction(float(v))) for v in row) for row in U)
+    n = len(rows)
+    more = [
+        [
+            sum(rows[k][i] * rows[k][j] for k in range(n)) - (1 + ROOM / 2) * wanted[i][j]
+            for j in range(n)
+        ]
+        for i in range(n)
+    ]
+    return rows if is_positive_definite(RationalMatrix.from_rows(more).numerators) else None

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from nrs_design.output import MAKER, SVG_MARK
 from nrs_design.reporting.document import Illustration
+from nrs_design.reporting.formatting import drawable
 from nrs_design.reporting.style import THEMED, figure_style
-from nrs_design.reporting.text import drawable
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

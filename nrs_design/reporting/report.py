@@ -8,16 +8,23 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import canonical, to_document
 from nrs_design.reporting.document import Report
+from nrs_design.reporting.evidence import evidence_sections
+from nrs_design.reporting.remedies import remedies_section
 from nrs_design.reporting.sections.design import design_sections
-from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goals_section
-from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
-from nrs_design.reporting.sections.key import key_facts, tests_section
+from nrs_design.reporting.sections.head import (
+    claim_of,
+    facts,
+    key_facts,
+    lights_of,
+    proved_rate,
+    remarks_of,
+    summary_of,
+    tests_section,
+)
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
 from nrs_design.reporting.sections.proof import proof_section
-from nrs_design.reporting.sections.remedies import remedies_section
-from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.reporting.sections.tail import (
     assumptions_section,
     recheck_section,

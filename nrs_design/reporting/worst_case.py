@@ -12,7 +12,7 @@ import numpy as np
 from nrs_design.axis import current, labelled
 from nrs_design.axis import unit as shown
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
+from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run
 from nrs_design.simulation.run import common_lever_arm
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse

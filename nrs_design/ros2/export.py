@@ -19,7 +19,7 @@ from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import DesignError, SpecError
-from nrs_design.exporters.outside import OUTSIDE
+from nrs_design.exporters.build import OUTSIDE
 from nrs_design.pipeline.design import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text

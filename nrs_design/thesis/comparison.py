@@ -7,10 +7,34 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache, partial
+from importlib.resources import files
 from math import isfinite
 from typing import Any
 
-from nrs_design.thesis.errata import read_data
+
+@dataclass(frozen=True, slots=True)
+class Erratum:
+    """One error or gap of the print."""
+
+    id: str  # Short name, which rows use
+    where: str  # Sections, equations or tables
+    about: str  # What it is
+
+
+@cache
+def errata() -> tuple[Erratum, ...]:
+    """Return all of them, in the order of the thesis."""
+    return tuple(Erratum(**entry) for entry in read_data("errata.yaml"))
+
+
+@cache
+def read_data(name: str) -> Any:
+    """Return what a data file of this package holds."""
+    from ruamel.yaml import YAML
+
+    text = files("nrs_design.thesis").joinpath(name).read_text(encoding="utf-8")
+    return YAML(typ="safe", pure=True).load(text)
+
 
 Number = float | complex
 Value = Number | Sequence[Number]
@@ -61,7 +85,7 @@ class ReproducedValue:
     limit: str = ""  # The largest such difference that is no drift
     # Constants that were fitted to prints and that the value rests on, with their numbers.
     fitted: str = ""
-    # Errors of the print that the row touches, see `nrs_design.thesis.errata`.
+    # Errors of the print that the row touches, see `nrs_design.thesis.comparison`.
     errata: tuple[str, ...] = ()
 
 

@@ -18,19 +18,19 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.robot.models.dynamics import gravity_torque, potential_energy
 from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.kinematics import inverse_kinematics
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
+from nrs_design.robot.models.robot import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found
-from nrs_design.thesis.matrices import family, impedance_rows, printed_rows
+from nrs_design.thesis.switching import family, impedance_rows, printed_rows
 
 # A pose in rad and m, and rates of it in 1/s and m/s; any would do.
 _POSE, _RATE = np.array((0.1, -0.2, 0.2)), np.array((0.3, -0.2, 0.05))
 _STEP = 1e-5
 
 
-def results() -> Iterable[Found]:
+def formulas() -> Iterable[Found]:
     """Check formulas that are wrong or missing, and some of chapters 2.3 and 5 that are right."""
     return (holds() for holds in CHECKS.values())
 

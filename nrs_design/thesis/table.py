@@ -1,23 +1,50 @@
-"""The whole table: a module for each topic of `rows.yaml`, in that order.
-
-It is that of the thesis, but for the formulas. It is also rendered as one HTML page.
-"""
+"""The whole table: what is computed for each topic of `rows.yaml`, and the table as a page."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from importlib import import_module
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from nrs_design import __version__
 from nrs_design.progress import Progress, silent
-from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, compare_topic
-from nrs_design.thesis.errata import Erratum, errata, read_data
-from nrs_design.thesis.tracking import measured
+from nrs_design.thesis import formulas, loops, materials, robot, runs, switching
+from nrs_design.thesis.comparison import (
+    Erratum,
+    Found,
+    PrintVerdict,
+    ReproducedValue,
+    compare_topic,
+    errata,
+    read_data,
+)
 
 CONVERTED = (
     "The dissertation's text was converted by machine: single characters that differ may be slips "
     "of the conversion and not of the print."
 )
+
+
+# What computes the results of each topic.
+TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
+    "formulas": formulas.formulas,
+    "tissue": materials.tissue,
+    "robot_kinematics": robot.robot_kinematics,
+    "robot_dynamics": robot.robot_dynamics,
+    "correction": robot.correction,
+    "actuator": loops.actuator,
+    "root_locus": loops.root_locus,
+    "tracking": robot.tracking,
+    "balance": robot.passive_balance,
+    "specimens": materials.specimens,
+    "impedance": loops.impedance,
+    "modes": switching.modes,
+    "force_loop": loops.force_loop,
+    "switching": switching.switching,
+    "gradient": switching.gradient,
+    "experiments": loops.experiments,
+    "runs": runs.simulated_runs,
+    "hands_on": loops.hands_on,
+    "hand_runs": runs.hand_runs,
+}
 
 
 def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
@@ -31,8 +58,8 @@ def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
 
 def topic_rows(topic: str) -> tuple[ReproducedValue, ...]:
     """Return the rows of a topic: those of `rows.yaml`, and what was measured on the robot."""
-    rows = compare_topic(topic, import_module(f"nrs_design.thesis.{topic}").results())
-    return (*rows, *measured()) if topic == "tracking" else rows
+    rows = compare_topic(topic, TOPICS[topic]())
+    return (*rows, *robot.measured()) if topic == "tracking" else rows
 
 
 def count_verdicts(table: Sequence[ReproducedValue]) -> dict[str, int]:
@@ -61,7 +88,7 @@ def counts_line(table: Sequence[ReproducedValue]) -> str:
     return f"{len(table)} rows: {', '.join(parts)}."
 
 
-def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) -> str:
+def render_page(table: tuple[ReproducedValue, ...]) -> str:
     """Return the page; the same rows give the same bytes."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
@@ -79,7 +106,6 @@ def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) 
         errors=printed_errors(table),
         summary=counts_line(table),
         converted=CONVERTED,
-        gallery=gallery,
         version=__version__,
     )
 

@@ -27,6 +27,7 @@ DERIVATIVE_GAIN, ZERO = Fraction(2060), Fraction("56.9706")
 # Thesis 6.3.1.1 and 6.4.1: largest torque and speed, band, specimens, lever arm.
 TORQUE = 0.3
 VELOCITY = math.radians(8)
+DESIRED = TORQUE / VELOCITY
 BANDWIDTH_IN_HERTZ = 2
 SOFT = Fraction("747.1461") * Fraction("0.24") ** 2
 STIFF = Fraction("1070.5") * Fraction("0.24") ** 2

@@ -150,10 +150,8 @@ def test_programs_with_a_proof_of_the_sampled_loop(export):
     done = export(spec, "--out", "out", "--format", "c", code=0)
     assert "every-2-ms: PROVED" in done.stdout
     proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
-    export(*proved, "--format", "vectors", "--quiet", code=0)
     before = contents()
     export(*proved, "--format", "c", code=0)
-    export(*proved, "--format", "vectors", code=0)
     assert contents() == before
     Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
     before = contents()
@@ -161,7 +159,7 @@ def test_programs_with_a_proof_of_the_sampled_loop(export):
     assert contents() == before
 
 
-@pytest.mark.parametrize("name", ["c", "json", "mat", "vectors", "fmu"])
+@pytest.mark.parametrize("name", ["c", "json", "mat", "fmu"])
 def test_the_export_of_another_spec_is_not_overwritten(export, sampled, name):
     spec, certificate = sampled
     options = ("--certificate", certificate, "--format", name, "--out", "out")
@@ -182,8 +180,7 @@ def test_two_laws_make_one_program(export, sampled):
     spec, certificate = sampled
     Path("other.nrs.yaml").write_text(Path(spec).read_text().replace("every-2-ms", "other"))
     for options in ((spec, "--certificate", certificate), ("other.nrs.yaml",)):
-        for name in ("c", "vectors"):
-            export(*options, "--format", name, "--out", "out", "-q", code=0)
+        export(*options, "--format", "c", "--out", "out", "-q", code=0)
     Path("main.c").write_text(
         """#include "other_test.h"
 #include "every-2-ms_test.h"

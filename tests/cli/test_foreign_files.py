@@ -27,11 +27,9 @@ QUICK = ("certify-switching", "schema")
 BEFORE = {
     "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
     "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
-    "figures.html": ("reproduce", "--figures", "."),
     "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
     "x.htm": ("identify", "actuator", *ACTUATOR, "--report", "x.htm"),
     "x.html": ("report", SAMPLED, "--out", "x.html"),
-    "x.png": ("compare-methods", COMMUTING, "--figure", "x.png"),
     "soft-tissue-sampled.mat": ("export", SAMPLED, "--format", "mat", "--out", "."),
 }
 

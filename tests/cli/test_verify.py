@@ -63,7 +63,7 @@ def firmware(tmp_path_factory):
     (folder / "x.nrs.yaml").write_text(head.replace("name: soft-tissue", "name: x") + sampling)
     run("export", "x.nrs.yaml", "--out", "x", "-q", "--format", "c", cwd=folder, code=0)
     again = ("export", "x.nrs.yaml", "--out", "x", "-q", "--certificate", "x/x.cert.json")
-    for name in ("json", "vectors", "monitor", "cmake", "fmu"):
+    for name in ("json", "monitor", "cmake", "fmu"):
         run(*again, "--format", name, cwd=folder, code=0)
     return folder
 

@@ -69,5 +69,15 @@ def test_a_mode_that_there_is_not_is_refused():
     assert step(without, np.uint32([0, 1, 2]), given).valid.tolist() == [True, False, False]
 
 
+def test_an_invalid_step_keeps_the_bits_of_the_state():
+    law = LAWS["inertia"]
+    given = {v.name: np.zeros(3, np.float32) for v in law.values}
+    given["velocity"] = np.array([0x7F800001, 0xFFC12345, 0], np.uint32).view(np.float32)
+    result = step(law, np.array([0, 1, 2], np.uint32), given)
+    assert not result.valid.any()
+    assert (result.states["velocity"].view(np.uint32) == given["velocity"].view(np.uint32)).all()
+    assert not result.outputs["command"].any()
+
+
 def _first(law):
     return (replace(c, values=c.values[:1]) for c in law.coefficients)

@@ -6,12 +6,12 @@ from fractions import Fraction
 from pathlib import Path
 
 from nrs_design.controllers.sector import sector_of
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text as law_header
 from nrs_design.exporters.formats.c import source_text as law_source
 from nrs_design.exporters.formats.monitor import header_text, source_text
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import Program
+from nrs_design.exporters.text import CNames
 from nrs_design.spec import parse_spec
 from tests.exporters.programs import LAWS, built, compiler
 from tests.support import SOFT_TISSUE

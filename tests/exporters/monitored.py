@@ -4,7 +4,7 @@ import ctypes
 import re
 from functools import cache
 
-from nrs_design.exporters.compiled import shared_library
+from nrs_design.exporters.formats.fmu import shared_library
 from nrs_design.spec import parse_spec
 from tests.exporters.programs import compiler
 from tests.support import SOFT_TISSUE

@@ -18,11 +18,11 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.exporters import rendered
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.exporters.text import CNames
 from nrs_design.models.drive import Takes
 from tests.support import program_named
 
@@ -101,11 +101,11 @@ def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
     return folder
 
 
-def write_law(folder: Path, record, law: StepLaw, vectors) -> tuple[Path, Path, str]:
+def write_law(folder: Path, record, law: StepLaw, cases) -> tuple[Path, Path, str]:
     """Write a law and its self-test; both sources come back, and the flag that brings a `main`."""
     names = CNames(record.spec.name)
     program = Program(record, law, names)
-    texts = self_test(law, vectors.columns, vectors.rows, names, program.about)
+    texts = self_test(law, cases, names, program.about)
     texts |= {".h": header_text(program).encode(), ".c": source_text(program).encode()}
     for ending, content in texts.items():
         (folder / f"{names.spec}{ending}").write_bytes(content)

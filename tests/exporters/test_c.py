@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.formats.vectors import make_vectors
+from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from tests.exporters.programs import (
     LAWS,
     STRICT,
@@ -31,7 +31,7 @@ SHAPES = thinned(sorted(LAWS, key=lambda shape: shape != "limits"), 1)
 def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
     """10,000 states, a part of them with NaN, infinities, subnormal numbers and random bits."""
     gcc, law = compiler(), LAWS[shape]
-    source, test, flag = write_law(tmp_path, sampled_export.record, law, make_vectors(law, COUNT))
+    source, test, flag = write_law(tmp_path, sampled_export.record, law, draw_cases(law, COUNT))
     built(gcc, *STRICT, flag, "-O0", "-c", test, "-o", tmp_path / "test.o")
     for level in ("-O0", "-O2", "-O3"):
         program = tmp_path / f"test{level}"
@@ -40,11 +40,38 @@ def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
         assert (done.returncode, done.stdout) == (0, SAME)
 
 
+@pytest.mark.parametrize("shape", LAWS)
+def test_cases_reach_every_corner(shape):
+    """Every kind of number that a memory can hold, in inputs and states; most steps are valid."""
+    cases = draw_cases(LAWS[shape])
+    valid = cases.rows[:, cases.columns.index("valid")]
+    assert 0.6 < valid.mean() < 0.95
+    assert (cases.rows[:, 0] == len(LAWS[shape].modes)).sum() > 10
+    for i, name in enumerate(cases.columns):
+        if name not in ("mode", "valid", *LAWS[shape].outputs) and not name.startswith("after."):
+            numbers = cases.rows[:, i].view(np.float32)
+            assert np.isnan(numbers).any()
+            assert np.isinf(numbers).any()
+            assert ((numbers != 0) & (np.abs(numbers) < np.finfo(np.float32).tiny)).any()
+
+
+def test_cases_saturate_and_do_not():
+    """In both directions, the command of the hand and that of the motor."""
+    law = LAWS["limits"]
+    cases = draw_cases(law)
+    valid = cases.rows[:, cases.columns.index("valid")] == 1
+    for name, limit in (("velocity_command", "velocity_limit"), ("command", "command_limit")):
+        numbers = cases.rows[valid, cases.columns.index(name)].view(np.float32)
+        largest = float(law.coefficient[limit].values[0])
+        for beyond in (numbers >= largest, numbers <= -largest, np.abs(numbers) < largest):
+            assert beyond.sum() > 10
+
+
 def test_an_integral_is_cut_off_in_many_cases():
     law = LAWS["clamped"]
-    vectors = make_vectors(law, COUNT)
+    cases = draw_cases(law, COUNT)
     limit = np.float32(float(law.coefficient["integral_limit"].values[0])).view(np.uint32)
-    after = vectors.rows[:, vectors.columns.index("after.integral")]
+    after = cases.rows[:, cases.columns.index("after.integral")]
     assert (after == limit).sum() > 100
 
 
@@ -52,26 +79,26 @@ def test_an_integral_is_cut_off_in_many_cases():
 def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, sampled_export, shape):
     """The same states on an emulated STM32F405, compiled as for the robot."""
     law = LAWS[shape]
-    source, test, flag = write_law(tmp_path, sampled_export.record, law, make_vectors(law, COUNT))
+    source, test, flag = write_law(tmp_path, sampled_export.record, law, draw_cases(law, COUNT))
     assert emulated(tmp_path, source, flag, test) == f"0: {SAME}"
 
 
 def test_the_law_links_to_nothing(tmp_path, sampled_export):
     law, own = LAWS["limits"], CNames(sampled_export.record.spec.name).lower
-    source, *_ = write_law(tmp_path, sampled_export.record, law, make_vectors(law, 1))
+    source, *_ = write_law(tmp_path, sampled_export.record, law, draw_cases(law, 1))
     check_that_it_calls_nothing(tmp_path, source, [f"{own}_init", f"{own}_step"])
 
 
 def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
     law = LAWS["filter and spring"]
-    check_with_misra(write_law(tmp_path, sampled_export.record, law, make_vectors(law, 1))[0])
+    check_with_misra(write_law(tmp_path, sampled_export.record, law, draw_cases(law, 1))[0])
 
 
 @pytest.mark.slow
 def test_every_slip_in_the_code_is_noticed(tmp_path, sampled_export):
-    """One line at a time: another operation, another operand or another bit fails the vectors."""
+    """One line at a time: another operation, another operand or another bit fails the cases."""
     gcc, law = compiler(), LAWS["filter and spring"]
-    source, test, flag = write_law(tmp_path, sampled_export.record, law, make_vectors(law, 300))
+    source, test, flag = write_law(tmp_path, sampled_export.record, law, draw_cases(law, 300))
     header = source.with_suffix(".h").read_text()
     built(gcc, *STRICT, flag, "-O0", "-c", test, "-o", tmp_path / "test.o")
     slips = 0
@@ -118,7 +145,7 @@ def slips_of(source):
 def test_fast_arithmetic_is_refused_by_the_compiler(tmp_path, sampled_export, flags, said):
     """Where guards would be left out, and where sums would be reordered."""
     law = LAWS["inertia"]
-    source, *_ = write_law(tmp_path, sampled_export.record, law, make_vectors(law, 1))
+    source, *_ = write_law(tmp_path, sampled_export.record, law, draw_cases(law, 1))
     done = run(compiler(), "-std=c99", *flags, "-c", source, "-o", tmp_path / "o")
     assert done.returncode != 0
     assert said in done.stderr
@@ -132,11 +159,11 @@ int main(void) { return (int)nrs_soft_tissue_self_test() + 1; }
 
 def written(folder, export, wrong=None):
     """Write a law with 60 cases, and another result in some of them."""
-    vectors = make_vectors(LAWS["limits"], 60)
+    cases = draw_cases(LAWS["limits"], 60)
     for row, column in wrong or []:
-        vectors.rows[row, vectors.columns.index(column)] ^= 1
+        cases.rows[row, cases.columns.index(column)] ^= 1
     (folder / "main.c").write_text(MAIN)
-    return folder / "main.c", *write_law(folder, export.record, LAWS["limits"], vectors)
+    return folder / "main.c", *write_law(folder, export.record, LAWS["limits"], cases)
 
 
 @pytest.mark.parametrize(

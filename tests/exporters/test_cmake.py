@@ -12,7 +12,7 @@ MAIN = source_file("robot.cpp")
 def firmware(sampled_export, tmp_path):
     (tmp_path / "firmware").mkdir()
     (tmp_path / "main.cpp").write_text(MAIN)
-    formats = ("c", "vectors", "monitor", "cmake")
+    formats = ("c", "monitor", "cmake")
     return write_formats(tmp_path / "firmware", sampled_export, formats)
 
 
@@ -44,7 +44,7 @@ def test_cmake_builds_the_library_and_runs_its_test(firmware, tmp_path):
     assert "No tests were found" not in tested.stderr
 
 
-def test_without_vectors_there_is_no_test(firmware, tmp_path):
+def test_without_a_self_test_there_is_no_test(firmware, tmp_path):
     (tmp_path / "CMakeLists.txt").write_text(PROJECT)
     for file in firmware.glob("*_test.*"):
         file.unlink()

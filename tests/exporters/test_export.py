@@ -12,7 +12,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.record import header_lines
 from nrs_design.spec import parse_spec
 from tests.support import words_of
 

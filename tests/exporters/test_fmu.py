@@ -14,12 +14,21 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
 from nrs_design.controllers.replica import step
+from nrs_design.errors import DesignError
 from nrs_design.exporters import format_of
-from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.cosimulation import contents, description, guid_of, packed
-from nrs_design.exporters.formats.fmu import remarks, render
-from nrs_design.exporters.formats.vectors import make_vectors
+from nrs_design.exporters.formats.fmu import compiler as found_compiler
+from nrs_design.exporters.formats.fmu import (
+    contents,
+    description,
+    guid_of,
+    packed,
+    remarks,
+    render,
+    shared_library,
+)
 from nrs_design.exporters.program import Program
+from nrs_design.exporters.self_test import draw_cases
+from nrs_design.exporters.text import CNames
 from tests.exporters.programs import LAWS, STRICT, built, compiler
 from tests.support import thinned
 
@@ -80,9 +89,9 @@ def test_every_bit_is_that_of_the_replica(opened, shape):
     law = LAWS[shape]
     slave, at = opened(shape)
     run(slave, at)
-    vectors = make_vectors(law)
-    given = {v.name: vectors.rows[:, vectors.columns.index(v.name)] for v in law.inputs}
-    modes = vectors.rows[:, 0]
+    cases = draw_cases(law)
+    given = {v.name: cases.rows[:, cases.columns.index(v.name)] for v in law.inputs}
+    modes = cases.rows[:, 0]
     state = {value.name: np.zeros(1, np.float32) for value in law.states}
     names = [f"state.{name}" for name in state]
     outputs = [at[name] for name in (*law.outputs, *names)]
@@ -259,3 +268,29 @@ def test_names_verdict_step_and_the_unit_of_turns(described):
     assert described.find("DefaultExperiment").get("stepSize") == "0.002"
     (rpm,) = [unit[0] for unit in described.iter("Unit") if unit.get("name") == "rpm"]
     assert 60 * float(rpm.get("factor")) == pytest.approx(6.283185307179586, rel=1e-15)
+
+
+SOURCES = {
+    "x.h": "int twice(int n);\n",
+    "x.c": '#include "x.h"\nint twice(int n) { return 2 * n; }\n',
+}
+
+
+def test_the_same_sources_are_the_same_bytes():
+    cc = compiler("cc")
+    first = shared_library(cc, SOURCES)
+    assert first.startswith(b"\x7fELF")
+    assert shared_library(cc, SOURCES) == first
+    assert b"/tmp" not in first
+
+
+def test_what_the_compiler_says_is_told():
+    with pytest.raises(DesignError, match=r"does not compile the law: x\.c"):
+        shared_library(compiler("cc"), {"x.c": "int main(\n"})
+
+
+@pytest.mark.parametrize("other", [("Darwin", "arm64"), ("Linux", "aarch64"), ("Windows", "AMD64")])
+def test_no_other_system_is_taken_for_linux_on_x86(monkeypatch, other):
+    monkeypatch.setattr("platform.system", lambda: other[0])
+    monkeypatch.setattr("platform.machine", lambda: other[1])
+    assert found_compiler() is None

@@ -23,7 +23,7 @@ LEFT_OUT = re.compile(
     "path|line|column|remedy|(spec_)?sha256|certificate(_id|_json)?|attempts|seconds|(lines_)?work|"
     "decay_rate_exact|files|package|together|robot|binary|parallel|starts|seed|coordinates|taus"
 )
-FORMATS = ("json", "c", "cmake", "monitor", "vectors", "fmu", "mat", "coq")
+FORMATS = ("json", "c", "cmake", "monitor", "fmu", "mat", "coq")
 OF_SPECS = ("check", "tune", "certify-switching", "simulate", "optimize")
 ROBOT = "specs/robots/neuroboscope.nrs.yaml"
 OTHERS = (

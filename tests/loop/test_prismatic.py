@@ -91,7 +91,7 @@ def test_verdict_and_rate_are_the_same(tmp_path):
 
 # What an axis that slides has not; frequencies and phases are in rad/s and deg on both.
 OF_A_TURN = re.compile(r"N\*m|N m\b|N·m|kg\*m|kg m|kg·m|deg/s|\brad\b(?!/s)")
-FORMATS = ("c", "monitor", "vectors", "coq", "json")
+FORMATS = ("c", "monitor", "coq", "json")
 
 
 def test_no_output_speaks_of_a_turn(tmp_path):

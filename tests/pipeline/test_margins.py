@@ -12,7 +12,7 @@ from nrs_design.pipeline import margins
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.margins import run_proof_margins
 from nrs_design.pipeline.runs import run_certification, run_design
-from nrs_design.reporting.margins import margin_lines
+from nrs_design.reporting.remedies import margin_lines
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import refuted_at_once
 from nrs_design.spec import read_spec

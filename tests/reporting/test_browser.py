@@ -11,7 +11,6 @@ from itertools import pairwise
 import pytest
 
 from nrs_design.certificates.certificate import canonical
-from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.table import render_page, reproduce
 from tests.browser import faults_of, open_file, overflow_of, severe
 from tests.certificates.attacks import (
@@ -358,16 +357,12 @@ def test_no_serious_fault_of_accessibility(axe, browser, page, tmp_path, case, s
 
 @pytest.fixture(scope="module")
 def reproduced(axe):
-    return {
-        "figures": gallery_page(draw_counterparts()),
-        "numbers": render_page(reproduce(), "figures.html"),
-    }
+    return render_page(reproduce())
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["figures", "numbers"])
 def test_no_serious_fault_of_accessibility_in_reproduced(
-    axe, browser, reproduced, tmp_path, name, scheme
+    axe, browser, reproduced, tmp_path, scheme
 ):
-    open_page(browser, reproduced[name], tmp_path, 1280, scheme)
+    open_page(browser, reproduced, tmp_path, 1280, scheme)
     assert faults_of(browser, axe) == []

@@ -5,9 +5,16 @@ from math import pi
 
 import pytest
 
-from nrs_design.reporting.formatting import number, polynomial_text, root, roots, shortened
+from nrs_design.reporting.formatting import (
+    drawable,
+    number,
+    polynomial_text,
+    root,
+    roots,
+    shortened,
+    wrapped_label,
+)
 from nrs_design.reporting.simulation import four_digits_up
-from nrs_design.reporting.text import drawable, wrapped_label
 from nrs_design.reporting.worst_case import scale_of
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.pipeline.runs import run_certification
-from nrs_design.reporting.next_steps import next_steps
+from nrs_design.reporting.remedies import next_steps
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS

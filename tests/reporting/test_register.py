@@ -5,7 +5,7 @@ import pytest
 from nrs_design.certificates.catalogue import Standing
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.assumption import Assumption
-from nrs_design.reporting.register import register_of
+from nrs_design.reporting.sections.tail import register_of
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import recorded
 from tests.support import SOFT_TISSUE

@@ -12,7 +12,7 @@ from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.sections.goals import goals_section, judged_goals
-from nrs_design.reporting.sections.summary import lights_of, summary_of
+from nrs_design.reporting.sections.head import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.reporting.style import new_axes, styled
-from nrs_design.reporting.ticks import in_full
+from nrs_design.reporting.style import in_full, new_axes, styled
 
 
 @pytest.mark.parametrize(

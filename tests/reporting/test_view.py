@@ -4,8 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.mode import Time
-from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
-from nrs_design.reporting.figures.view import show_disk, show_half_plane
+from nrs_design.reporting.figures.complex_plane import draw_eigenvalues, show_disk, show_half_plane
 from nrs_design.reporting.style import new_axes
 
 FAR = np.array([-1 + 3j, -1 - 3j, -20000, -2 + 3j, -2 - 3j, -4])

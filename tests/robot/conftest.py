@@ -7,7 +7,7 @@ import pytest
 from nrs_design.robot.design.motion_control import design_load_model
 from nrs_design.robot.models.drive import build_drive
 from nrs_design.robot.models.robot import build_robot
-from nrs_design.robot.simulation.tracking.track import experiment_tilt
+from nrs_design.robot.simulation.track import experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

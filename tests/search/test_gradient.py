@@ -21,7 +21,7 @@ from nrs_design.search.gradient import (
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 from nrs_design.thesis import thesis
-from nrs_design.thesis.matrices import impedance_rows
+from nrs_design.thesis.switching import impedance_rows
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import dayawansa_martin, family, holds
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.reporting.evidence.norms import step_norms
+from nrs_design.reporting.evidence.functions import step_norms
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
 from nrs_design.simulation.norms import quadratic_norm

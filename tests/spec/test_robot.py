@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.robot.models import build_robot
+from nrs_design.robot.models.robot import build_robot
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

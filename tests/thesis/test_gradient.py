@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.search.family import Family
 from nrs_design.search.gradient_settings import Order
-from nrs_design.thesis.gradient import FEW, UPDATES, pairs, run
+from nrs_design.thesis.switching import FEW, UPDATES, pairs, run
 
 PAIRS = dict(pairs())
 RADII = [10.0**power for power in range(13)]

@@ -5,9 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from nrs_design.thesis import formulas, hands_on, impedance, table, thesis
-from nrs_design.thesis.comparison import PrintVerdict, meets_standard
-from nrs_design.thesis.errata import errata
+from nrs_design.thesis import formulas, loops, table, thesis
+from nrs_design.thesis.comparison import PrintVerdict, errata, meets_standard
 from nrs_design.thesis.formulas import CHECKS
 from nrs_design.thesis.table import reproduce, topic_rows
 
@@ -54,7 +53,7 @@ def test_limits_of_table_7_1_by_eigenvalues(find, index):
     """The characteristic polynomial by hand: s D(s) (Mt s + Bt) + k N(s) = 0."""
     row = find("largest stable stiffness of the hand, each experiment", "table 7.1")
     limit = float(row.value.split(", ")[index])
-    Mt, Bt = hands_on.ADMITTANCES[index]
+    Mt, Bt = loops.ADMITTANCES[index]
     free = np.polymul([Mt, Bt, 0], thesis.EXACT_LOOP.denominator)
     rightmost = [
         np.roots(
@@ -67,7 +66,7 @@ def test_limits_of_table_7_1_by_eigenvalues(find, index):
 
 def test_a_changed_computation_becomes_a_drift(monkeypatch):
     biased = SimpleNamespace(Mt=0.01, Bt=2.16)
-    monkeypatch.setattr(impedance, "optimize_impedance", lambda problem: biased)
+    monkeypatch.setattr(loops, "optimize_impedance", lambda problem: biased)
     drifts = {row.name for row in topic_rows("impedance") if row.verdict is PrintVerdict.DRIFT}
     assert "Mt, Bt: soft, Mt >= 0.01; G exact" in drifts
     assert "k_soft" not in drifts

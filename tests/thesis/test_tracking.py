@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.robot.simulation.tracking.experiment import thesis_experiments
-from nrs_design.robot.simulation.tracking.measured import measured_rmse
+from nrs_design.robot.models.robot import robot, robot_spec
+from nrs_design.robot.simulation.experiment import thesis_experiments
+from nrs_design.robot.simulation.track import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
-from nrs_design.thesis import hand_runs, thesis
-from nrs_design.thesis.hands_on import ADMITTANCES
+from nrs_design.thesis import runs, thesis
+from nrs_design.thesis.loops import ADMITTANCES
 from nrs_design.thesis.table import topic_rows
 
 TEXT = TEMPLATES["robot"]
@@ -51,13 +51,13 @@ def test_no_measurement_of_another(text, tilt, controller, rate):
 
 
 @pytest.mark.parametrize(("Mt", "Bt"), ADMITTANCES)
-@pytest.mark.parametrize("stiffness", [None, hand_runs.HAND])
+@pytest.mark.parametrize("stiffness", [None, runs.HAND])
 def test_the_total_torque_is_a_balance(Mt, Bt, stiffness):
     """``int F dt = Bt int vm dt + Mt vm``, and the robot is behind its admittance by 1/Kv."""
-    run = hand_runs.move(Mt, Bt, stiffness)
+    run = runs.move(Mt, Bt, stiffness)
     # Thesis 6.12: (a1 - b1)/a0 of the realization.
     behind = run.last * (56.89 - 28.416) / 1618.8
-    wanted = Bt * (hand_runs.WAY + behind) + Mt * run.last
+    wanted = Bt * (runs.WAY + behind) + Mt * run.last
     if stiffness is None or Mt == 1 or Bt == 8:
         assert run.effort.total == pytest.approx(wanted, rel=2e-3)
     else:
@@ -69,8 +69,8 @@ def test_a_constant_torque_by_hand():
     """``v = F/Bt (1 - exp(-Bt t/Mt))`` but for the motion loop, which is some 20 ms behind."""
     t = np.linspace(0, 10, 100_001)
     v = thesis.TORQUE / 4 * (1 - np.exp(-4 * t))
-    time = np.interp(hand_runs.WAY, np.concatenate([[0], np.cumsum(v[1:] * 1e-4)]), t)
-    assert hand_runs.move(1, 4).time == pytest.approx(time + 0.0176, abs=2e-3)
+    time = np.interp(runs.WAY, np.concatenate([[0], np.cumsum(v[1:] * 1e-4)]), t)
+    assert runs.move(1, 4).time == pytest.approx(time + 0.0176, abs=2e-3)
 
 
 def test_the_spec_of_the_runs_is_the_robot_of_the_thesis():

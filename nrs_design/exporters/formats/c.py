@@ -1,4 +1,4 @@
-"""The law in C99: a header with numbers and types, and a source with `init` and `step`.
+"""The law in C99: a header with numbers and types, a source with `init` and `step`, a self-test.
 
 No heap, no recursion, no function of libm, one rounding for each operation.
 """
@@ -12,17 +12,16 @@ from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_law import INTEGRAL_LIMIT
 from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters import SAMPLED, Format
-from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.program import Program, program_of
-from nrs_design.exporters.start import sign_lines, start_lines
-from nrs_design.exporters.template import fill_template
-from nrs_design.output import C_HEADER, C_SOURCE
+from nrs_design.exporters.program import Program, program_of, sign_lines, start_lines
+from nrs_design.exporters.self_test import draw_cases, self_test
+from nrs_design.exporters.text import CNames, block_comment, fill_template
+from nrs_design.output import C_HEADER, C_SOURCE, C_TEST, C_TEST_HEADER
 
 FORMAT = Format(
-    "C99 for a processor: init and step in single precision, no heap, no libm",
+    "C99 for a processor: init and step in single precision, no heap, no libm; a self-test",
     SAMPLED,
-    {".h": C_HEADER, ".c": C_SOURCE},
+    {".h": C_HEADER, ".c": C_SOURCE, "_test.h": C_TEST_HEADER, "_test.c": C_TEST},
     executable=True,
 )
 
@@ -35,9 +34,13 @@ _SEEN = {"command": "velocity command", "torque": "torque"}
 
 
 def render(export: Export) -> dict[str, bytes]:
-    """Return header and source, by their endings."""
+    """Return header and source of the law and of its self-test, by their endings."""
     program = program_of(export)
-    return {".h": header_text(program).encode(), ".c": source_text(program).encode()}
+    return {
+        ".h": header_text(program).encode(),
+        ".c": source_text(program).encode(),
+        **self_test(program.law, draw_cases(program.law), program.names, program.about),
+    }
 
 
 def header_text(program: Program) -> str:

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from nrs_design.exporters import SAMPLED, Format
-from nrs_design.exporters.c_names import harmless
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.self_test import program_macro
-from nrs_design.exporters.template import fill_template
+from nrs_design.exporters.text import fill_template, harmless
 from nrs_design.output import CMAKE
 
 FORMAT = Format(
-    "a library and a test for CMake from the files of c, vectors and monitor beside it",
+    "a library and a test for CMake from the files of c and monitor beside it",
     SAMPLED,
     {".cmake": CMAKE},
     executable=True,

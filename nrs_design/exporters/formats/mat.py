@@ -17,8 +17,7 @@ import scipy.io
 
 from nrs_design.certificates.certificate import Certificate, dump
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.record import ExportRecord, header_lines
 from nrs_design.output import MAT
 from nrs_design.pipeline.design import run_linear_parts, run_open_loops
 from nrs_design.proof.bounds import lower_float, upper_float

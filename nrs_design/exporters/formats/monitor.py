@@ -12,13 +12,11 @@ from typing import Any
 
 from nrs_design.axis import unit
 from nrs_design.exporters import SAMPLED, Format
-from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
+from nrs_design.exporters.monitor_limits import MonitoredRegion, MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
-from nrs_design.exporters.region import MonitoredRegion
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
-from nrs_design.exporters.template import fill_template
+from nrs_design.exporters.text import CNames, block_comment, fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
 
 FORMAT = Format(

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import repeat
 
-from nrs_design.exporters.proof_assistant.statement import AbstractStatement, Theorem
 from nrs_design.exporters.proof_assistant.text import (
+    AbstractStatement,
     Definitions,
+    Theorem,
     factor_of,
     listed,
     long_integer,

@@ -6,9 +6,9 @@ from fractions import Fraction
 from math import ceil
 
 from nrs_design.exporters.proof_assistant.flows import FlowStatement
-from nrs_design.exporters.proof_assistant.statement import Theorem
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
+    Theorem,
     factor_of,
     identifiers,
     listed,

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
-from nrs_design.exporters.proof_assistant.statement import AbstractStatement, Theorem
 from nrs_design.exporters.proof_assistant.text import (
+    AbstractStatement,
     Definitions,
+    Theorem,
     factor_of,
     listed,
     reordered,

@@ -1,17 +1,22 @@
-"""The page of one statement, chosen by what it shows and what it offers, never by its kind."""
+"""The pages of statements, each chosen by what it shows and offers, never by its kind."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Paragraph, Section
 from nrs_design.reporting.evidence.blocks import blocks_page
-from nrs_design.reporting.evidence.constants import constants_page
-from nrs_design.reporting.evidence.functions import functions_page
-from nrs_design.reporting.evidence.growth import growth_page
-from nrs_design.reporting.evidence.obstruction import obstruction_page
-from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.functions import constants_page, functions_page
+from nrs_design.reporting.evidence.growth import growth_page, obstruction_page
+from nrs_design.reporting.evidence.offers import Page, offer_of
 from nrs_design.reporting.evidence.regions import bound_page, saturation_page
+from nrs_design.reporting.evidence.runs import unbounded_run
+from nrs_design.search.certification import Certification
+
+_LINEAR = "Nothing is cut off at a limit in this run, as if no signal ever saturated."
 
 _PAGES = {
     Shows.STABILITY: functions_page,
@@ -30,3 +35,15 @@ def page_of(system: SwitchedSystem, evidence: AbstractEvidence) -> Page:
     if any(form.corner is not None for form in offer.forms):
         return constants_page(system, evidence, offer)
     return _PAGES[evidence.shows](system, evidence, offer)
+
+
+def evidence_sections(certification: Certification) -> Iterator[Section]:
+    """Yield a section for every statement, and one with a run."""
+    system, evidence = certification.system, certification.evidence
+    for statement in certification.statements:
+        yield from page_of(system, statement).sections()
+    drawn = None if evidence is None else page_of(system, evidence).run
+    run = unbounded_run(system) if drawn is None else drawn()
+    if system.saturation is not None:
+        run = replace(run, blocks=(Paragraph(_LINEAR), *run.blocks))
+    yield run

@@ -14,8 +14,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.offers import Offer
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.offers import Offer, Page
 from nrs_design.reporting.evidence.runs import BESIDE, EUCLIDEAN, GREEDY, Greedy, trials_per_step
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.modes import hardest_modes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -15,9 +16,7 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.norms import largest_norm, matrix_tables, step_norms
-from nrs_design.reporting.evidence.offers import Form, Offer
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.offers import Form, Offer, Page
 from nrs_design.reporting.evidence.runs import (
     Greedy,
     bounded_run,
@@ -29,8 +28,64 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.admissible import norm_ratio
-from nrs_design.simulation.norms import clipped, scaled_matrices
+from nrs_design.simulation.norms import (
+    Array,
+    Norm,
+    clipped,
+    modes_at_corner,
+    polynomial_norm,
+    quadratic_norm,
+    scaled_matrices,
+)
 from nrs_design.simulation.switched import fine_step, mode_rates, sampled_direction, worst_direction
+
+# Larger matrices, and more of them, do not fit on a page.
+_WRITTEN, _TABLES = 8, 2
+
+
+def norms_of(forms: Sequence[Form], order: int) -> list[Norm]:
+    """Return the root of each form; quadratic ones are all divided by the same number."""
+    if forms[0].degree == 1:
+        return [quadratic_norm(Q) for Q in scaled_matrices(*(form.Q for form in forms))]
+    return [polynomial_norm(form.Q, form.degree, order) for form in forms]
+
+
+def largest_norm(forms: Sequence[Form], order: int) -> Norm:
+    """Return the largest root of the forms in contact, and in free motion of those for it.
+
+    Without forms for free motion, those in contact hold there with the deflection at zero.
+    """
+    norms = norms_of(forms, order)
+    touching = [norm for norm, form in zip(norms, forms, strict=True) if not form.free]
+    free = [norm for norm, form in zip(norms, forms, strict=True) if form.free]
+
+    def in_contact(states: Array) -> Array:
+        return np.asarray(np.max([norm(states) for norm in touching], axis=0))
+
+    def everywhere(states: Array) -> Array:
+        flying = np.max([norm(states[..., :-1]) for norm in free], axis=0)
+        return np.asarray(np.where(states[..., -1] > 0, in_contact(states), flying))
+
+    return everywhere if free else in_contact
+
+
+def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
+    """Return the norm of every step of a round; in free motion without the deflection."""
+    norms = norms_of(forms, system.order)
+    return norms if system.contact is None else [clipped(norm) for norm in norms]
+
+
+def matrix_tables(forms: Sequence[Form], states: tuple[str, ...]) -> list[Table]:
+    """Return the matrices of the first quadratic forms as tables, if a page holds them."""
+    matrices = scaled_matrices(*(form.Q for form in forms))
+    shown = list(zip(forms, matrices, strict=True))[:_TABLES]
+    return [_table(form.name, Q, states[: len(Q)]) for form, Q in shown if len(Q) <= _WRITTEN]
+
+
+def _table(of: str, Q: Array, states: tuple[str, ...]) -> Table:
+    rows = tuple((name, *(number(v, 5) for v in row)) for name, row in zip(states, Q, strict=True))
+    return Table(f"Q{of and f' of {of}'}, divided by the largest entry", ("", *states), rows)
+
 
 # A page lists no more modes; those with the least slack are shown.
 _LISTED = 24
@@ -223,3 +278,52 @@ def _rate_blocks(
     title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
     columns = ("Mode", f"{quantity} in the norm of Q{unit}", f"Slack{unit}")
     return Paragraph(_RATES[system.time] + _IN_CONTACT * lost), Table(title, columns, rows)
+
+
+_CONSTANT = (
+    "These parameters must be constant: one value each in all modes and at all times. Which "
+    "values, need not be known. With two more matrices for each mode the condition is affine in "
+    "what depends on them, so the corners of their ranges decide for all values between."
+)
+_TEXT = (
+    "The certificate holds P at the corners of the constant parameters, and two more matrices for "
+    "each mode, which are not shown. They are written with denominator 2^{}; here all P are "
+    "divided by the largest entry."
+)
+
+
+def constants_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
+    """Return the page of P at every corner of the constant parameters, with free switching."""
+    which = "Which norm |x| is, depends on the values of the constant parameters."
+    text = Paragraph(_TEXT.format(offer.denominator_log2))
+    return Page(
+        "quadratic function of constant parameters",
+        (
+            f"{words.free_bound(system)} {which}",
+            _CONSTANT,
+            *words.unneeded_rules(system),
+            words.decision(system),
+        ),
+        ("A constant parameter that changes while the system moves, however slowly.",),
+        lambda: _run(system, evidence, offer),
+        lambda: (Section(EVIDENCE, (text, *matrix_tables(offer.forms, system.states))),),
+        "however fast they change, the constant ones excepted",
+    )
+
+
+def _run(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Section:
+    """Draw a run at the corner where the decay is slowest."""
+    forms = scaled_matrices(*(form.Q for form in offer.forms))
+    corners = [modes_at_corner(system, k) for k in range(len(forms))]
+    slowest = max if system.time is Time.DISCRETE else min
+    rates = [slowest(mode_rates(at, P)) for at, P in zip(corners, forms, strict=True)]
+    k = rates.index(slowest(rates))
+    fixed, P = corners[k], forms[k]
+    hardest = replace(hardest_modes(fixed, P, trials_per_step(fixed)), contact=None)
+    proved = evidence.proved_rate(system)
+    assert proved is not None  # it shows stability
+    return bounded_run(
+        Greedy(fixed, hardest, quadratic_norm(P), worst_direction(hardest, P), float(proved)),
+        "in the norm of P at this corner",
+        f"The constant parameters stay at corner {k + 1}, where the decay is slowest.",
+    )

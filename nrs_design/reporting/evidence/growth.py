@@ -1,4 +1,4 @@
-"""Evidence of instability: a motion that the system allows and that does not decay."""
+"""Instability: a motion that does not decay; and why no common quadratic function exists."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.offers import Offer, offer_of
-from nrs_design.reporting.evidence.page import Page
+from nrs_design.reporting.evidence.offers import Offer, Page, offer_of
 from nrs_design.reporting.evidence.runs import Bound, run_figures
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
@@ -119,11 +118,13 @@ def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
     """Return the page of what happens at one value of the constant parameters."""
     ((_, part),) = offer.parts
     page = growth_page(system_at(system, offer.shares), part, offer_of(part))
+    run = page.run
+    assert run is not None  # it shows instability
     return Page(
         "a value of the parameter that is not stable",
         (_AT_A_VALUE, *page.meaning),
         (*page.limits, _OTHER_VALUES),
-        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *page.run().blocks)),
+        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *run().blocks)),
     )
 
 
@@ -218,3 +219,43 @@ class _Witness:
 def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list[tuple[int, float]]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     return [(index[name], time) for name, time in steps]
+
+
+_LISTED = 24
+_MEANING = (
+    "That no common quadratic function exists says nothing about stability: a function of another "
+    "kind may exist."
+)
+_ARGUMENT = (
+    "The certificate holds a positive semidefinite matrix X for some modes, such that the sum S of "
+    "{} over them is positive definite. If some Q > 0 decreased in every mode, then the trace of "
+    "Q S would be positive, and equal to the sum of the traces of X ({}), which is at most zero: a "
+    "contradiction. A search for a common quadratic function can stop."
+)
+_TERMS = {
+    Time.CONTINUOUS: ("A X + X A'", "A'Q + QA"),
+    Time.DISCRETE: ("A X A' - X", "A'QA - Q"),
+}
+
+
+def obstruction_page(system: SwitchedSystem, _: AbstractEvidence, offer: Offer) -> Page:
+    """Return the argument, and the modes that contradict each other."""
+    return Page(
+        "no common quadratic function exists",
+        (_MEANING,),
+        (),
+        sections=lambda: (_section(system, offer),),
+    )
+
+
+def _section(system: SwitchedSystem, offer: Offer) -> Section:
+    """Say why there is none, and which modes contradict each other."""
+    text = f"{_ARGUMENT.format(*_TERMS[system.time])} {_MEANING}"
+    weights = offer.weights
+    rows = tuple((name, number(float(share), 4)) for name, share in weights[:_LISTED])
+    some = f", the {_LISTED} heaviest" if len(weights) > _LISTED else ""
+    left_out = len(system.modes) - len(weights)
+    none = f"; {left_out} modes have no part in it" if left_out else ""
+    title = f"Weight of the modes in the contradiction{some}{none}"
+    table = Table(title, ("Mode", "Share of the trace of X [1]"), rows)
+    return Section("No common quadratic function", (Paragraph(text), table))

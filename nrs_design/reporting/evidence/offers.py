@@ -1,7 +1,4 @@
-"""What each kind of evidence offers a page: forms on states, a closed sequence, weights, parts.
-
-This table is the only place in the reports that knows a kind by its name.
-"""
+"""The page of a statement, and what each kind of evidence offers it."""
 
 from __future__ import annotations
 
@@ -14,6 +11,23 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import MODES
 from nrs_design.proof.steps import FREE
+from nrs_design.reporting.document import Section
+
+
+@dataclass(frozen=True)
+class Page:
+    """Name, meaning, limits, tables and simulated run of one statement.
+
+    The claim is that of the evidence, and no page repeats it.
+    """
+
+    name: str  # What it is, in a few words, for a table
+    meaning: tuple[str, ...]  # What the claim means, what it rests on, and how it was decided
+    limits: tuple[str, ...]  # What does not follow, beside what the meaning says of it
+    # Below the proved bound, or a witness of instability; None where it decides nothing.
+    run: Callable[[], Section] | None = None
+    sections: Callable[[], tuple[Section, ...]] = tuple  # The numbers in tables
+    changing: str = "however fast they change"  # Which values between corners are covered
 
 
 @dataclass(frozen=True)
@@ -94,7 +108,7 @@ def _sequence(e: Any) -> Offer:
     return Offer(steps=e.steps, edges=e.edges, factor=None if e.factor is None else e.factor[0])
 
 
-# By kind of evidence.
+# By kind of evidence: the only place in the reports that knows a kind by its name.
 OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
     "constants-quadratic": _corners,

@@ -13,12 +13,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.norms import matrix_tables
-from nrs_design.reporting.evidence.offers import Offer
-from nrs_design.reporting.evidence.page import Page
-from nrs_design.reporting.evidence.runs import simulated
-from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
-from nrs_design.reporting.figures.run import draw_run
+from nrs_design.reporting.evidence.functions import matrix_tables
+from nrs_design.reporting.evidence.offers import Offer, Page
+from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run, draw_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.titles import SATURATION
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
@@ -69,8 +66,7 @@ def bound_page(system: SwitchedSystem, evidence: AbstractEvidence, _: Offer) -> 
             "That the bound is reached: the largest possible value may be smaller.",
             *between,
         ),
-        lambda: simulated(_against(system, bound, worst_against(system, bound))),
-        lambda: (_bound_section(system, bound),),
+        sections=lambda: (_bound_section(system, bound),),
     )
 
 
@@ -134,8 +130,7 @@ def saturation_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: O
             f"That the {start} is within the limit of a spec: motions may begin beyond it.",
             "Lower limits, and other signals that saturate, such as the current of the motor.",
         ),
-        lambda: simulated(_saturated_run(system, evidence, offer)),
-        lambda: (_saturation_section(system, evidence, offer),),
+        sections=lambda: (_saturation_section(system, evidence, offer),),
     )
 
 

@@ -2,23 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from nrs_design.axis import current, labelled, unit
 from nrs_design.proof.bounds import upper
-from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
+from nrs_design.reporting.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+    styled,
+)
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from nrs_design.simulation.time_response import TimeResponse
 
 # A bound beyond so many times the largest torque is named at the edge, not drawn to scale.
 _FAR = 4.0
+# Two points from each of so many parts of a curve are drawn: its least and its largest value.
+_PARTS = 400
+_FIRST: dict[str, Any] = {"color": BLUE, "lw": 1.6}
+_SECOND: dict[str, Any] = {"color": INK, "lw": 1.2, "linestyle": (0, (6, 2, 1.5, 2))}
+_LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
+_BOUND: dict[str, Any] = {"color": VERMILLION, "linestyle": "--", "lw": 1.4}
+# Pale, so that a page's light or dark shows through.
+_SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE, BLUE, VERMILLION), 0.16
+# Width of a panel in letters; a stay that is narrower than its name goes without.
+_LETTERS = 56
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """Axes with signals over one time."""
+
+    label: str  # Quantity and unit
+    curves: dict[str, NDArray[np.float64]]  # By name, shape (N,), in the unit
+    limits: tuple[float, ...] = ()  # Horizontal lines
+    bounds: tuple[float, ...] = ()  # Horizontal lines that nothing crosses
+    bound: str = ""  # What they are
 
 
 def draw_simulated(
@@ -33,7 +69,7 @@ def draw_simulated(
     With a lever arm in m the deflection is in mm, else in deg. A bound on the torque in N m comes
     with whether it is about this run.
     """
-    t, torque = response.t, response["torque"]
+    torque = response["torque"]
     signs = (1, -1) if bool((torque < -0.01 * torque_limit).any()) else (1,)
     title, about = "", "certified bound"
     bounds: tuple[float, ...] = ()
@@ -47,28 +83,14 @@ def draw_simulated(
     deg = current().fine
     scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     fastest = deg * velocity_limit
+    speeds = {"of the axis": deg * response["velocity"], "commanded": deg * response["hand"]}
+    limits = tuple(sign * torque_limit for sign in signs)
     panels = (
-        Panel(
-            labelled("Torque [N m]"),
-            (Curve(t, torque, "torque"),),
-            tuple(sign * torque_limit for sign in signs),
-            "limit of the spec",
-            bounds=bounds,
-            bound=about,
-        ),
-        Panel(f"Deflection [{length}]", (Curve(t, scale * response["depth"], "deflection"),)),
-        Panel(
-            labelled("Velocity [deg/s]"),
-            (
-                Curve(t, deg * response["velocity"], "of the axis"),
-                Curve(t, deg * response["hand"], "commanded", look=3),
-            ),
-            (fastest, -fastest),
-            "limit of the spec",
-        ),
+        Panel(labelled("Torque [N m]"), {"torque": torque}, limits, bounds, about),
+        Panel(f"Deflection [{length}]", {"deflection": scale * response["depth"]}),
+        Panel(labelled("Velocity [deg/s]"), speeds, (fastest, -fastest)),
     )
-    span = (float(t[0]), float(t[-1]))
-    return draw_panels([PanelColumn(title, panels, span, tuple(_stays(response)))])
+    return draw_panels(response.t, panels, [*_stays(response)], title)
 
 
 def _stays(response: TimeResponse) -> Iterator[tuple[float, float, str]]:
@@ -77,3 +99,89 @@ def _stays(response: TimeResponse) -> Iterator[tuple[float, float, str]]:
     for start, end in zip([0, *changes], [*changes, len(response) - 1], strict=True):
         name = response.modes[int(response.mode[start])]
         yield float(response.t[start]), float(response.t[end]), name
+
+
+@styled
+def draw_panels(
+    t: NDArray[np.float64],
+    panels: Sequence[Panel],
+    stays: Sequence[tuple[float, float, str]] = (),
+    title: str = "",
+) -> Figure:
+    """Draw panels above each other, and shade who is in control when."""
+    figure = new_figure(1.1 + 1.45 * len(panels))
+    column = figure.subplots(len(panels), sharex="col", squeeze=False)[:, 0]
+    names = list(dict.fromkeys(name for _, _, name in stays))
+    handles: dict[str, Artist] = {}
+    span = float(t[0]), float(t[-1])
+    for axes, panel in zip(column, panels, strict=True):
+        _draw_panel(axes, t, panel, handles)
+        _shade(axes, span, stays, names, named=axes is column[0])
+        axes.set_ylabel(panel.label)
+    column[-1].set(xlabel="Time [s]", xlim=span)
+    if title:
+        column[0].set_title(title, fontsize=9.5, pad=18 if stays else 6)
+    figure.align_ylabels(column)
+    _legend(figure, handles, names)
+    return figure
+
+
+def _draw_panel(
+    axes: Axes, t: NDArray[np.float64], panel: Panel, handles: dict[str, Artist]
+) -> None:
+    for look, (name, y) in zip((_FIRST, _SECOND), panel.curves.items(), strict=False):
+        (line,) = axes.plot(*_thinned(t, y), label=name, **look)
+        # What stands alone is named by its axis.
+        if len(panel.curves) > 1:
+            handles.setdefault(name, line)
+    for level in panel.limits:
+        handles.setdefault("limit of the spec", axes.axhline(level, **_LIMIT))
+    for level in panel.bounds:
+        handles.setdefault(panel.bound, axes.axhline(level, **_BOUND))
+
+
+def _thinned(
+    t: NDArray[np.float64], y: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Thin a curve, keeping the least and the largest value of each part."""
+    if len(t) <= 2 * _PARTS:
+        return t, y
+    kept = {0, len(t) - 1}
+    for part in np.array_split(np.arange(len(t)), _PARTS):
+        kept |= {int(part[y[part].argmin()]), int(part[y[part].argmax()])}
+    picked = np.array(sorted(kept))
+    return t[picked], y[picked]
+
+
+def _shade(
+    axes: Axes,
+    span: tuple[float, float],
+    stays: Sequence[tuple[float, float, str]],
+    names: Sequence[str],
+    *,
+    named: bool,
+) -> None:
+    for low, high, name in stays:
+        if low >= high:
+            continue
+        tint = _SHADES[names.index(name) % len(_SHADES)]
+        axes.axvspan(low, high, color=tint, alpha=_PALE, linewidth=0, zorder=0)
+        if named and _LETTERS * (high - low) > (len(name) + 1) * (span[1] - span[0]):
+            above = axes.get_xaxis_transform()
+            place: dict[str, Any] = {"transform": above, "ha": "center", "va": "bottom"}
+            axes.text((low + high) / 2, 1.02, name, color=MUTED, fontsize=8.5, **place)
+
+
+def _legend(figure: Figure, handles: dict[str, Artist], names: Sequence[str]) -> None:
+    from nrs_design.plotting import Patch
+
+    shades = {
+        f"controller: {name}": Patch(facecolor=_SHADES[i % len(_SHADES)], alpha=_PALE)
+        for i, name in enumerate(names)
+    }
+    items: dict[str, Artist] = handles | shades
+    if not items:
+        return
+    columns = max(1, min(3, 70 // (max(map(len, items)) + 6)))
+    figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(items) // columns))
+    figure.legend([*items.values()], [*items], loc="outside lower center", ncols=columns)

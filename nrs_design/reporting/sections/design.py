@@ -68,7 +68,7 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     if analysis.impedance:
         parts.append(impedance_section(designed, analysis.impedance))
         if all(item.requirement.axis is not None for item in analysis.impedance):
-            parts.append(landscape_section(designed, analysis.impedance))
+            parts += filter(None, [landscape_section(designed, analysis.impedance)])
     if analysis.force:
         loci = (_force_locus(item) for item in analysis.force[:CURVES])
         parts.append(Section("Force control", (*force_blocks(designed, analysis), *loci)))

@@ -1,11 +1,18 @@
-"""The head of the report: claim, remarks and facts."""
+"""The top of the report: claim, facts, lights, and what a reader wants to know first."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design import __version__
+from nrs_design.axis import unit
+from nrs_design.certificates.bounds import bound_on
+from nrs_design.certificates.catalogue import CONTACT_KEPT, catalogue_kind
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.design.measures import SENSITIVITY_PEAK
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
@@ -13,13 +20,27 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Derived
+from nrs_design.reporting.document import Bullets, Derived, Light, Paragraph, Section, State
 from nrs_design.reporting.formatting import shortened
+from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.sections.titles import EVIDENCE, MEANT, MODES, RECHECK, RUNGS, SPEC
+from nrs_design.reporting.sections.tail import register_of
+from nrs_design.reporting.sections.titles import (
+    ASSUMPTIONS,
+    EVIDENCE,
+    GOALS,
+    MEANT,
+    MODES,
+    RECHECK,
+    RUNGS,
+    SPEC,
+)
 from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
 
 # Labels and values.
 _Facts = list[tuple[str, str]]
@@ -28,8 +49,6 @@ NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
 )
-
-
 REFUTED_ASIDE = (
     "Refuted {}, for which the environment would have to pull. Where contact may be lost:"
 )
@@ -153,3 +172,190 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
         if environment.range_covers is not None:
             at = ("environments", name, "range_covers")
             yield (f"Range of {name} holds", linked(loaded, COVERS[environment.range_covers], *at))
+
+
+_PROOF = {
+    Verdict.PROVED: (State.GOOD, "proved; exact arithmetic decided, and a second library agreed"),
+    Verdict.REFUTED: (State.BAD, "refuted, with a witness"),
+    Verdict.INCONCLUSIVE: (State.DOUBTFUL, "inconclusive: a gate must treat it as a failure"),
+}
+
+
+def summary_of(result: Result) -> tuple[str, str]:
+    """Return what was shown, and under which assumptions, in a sentence each."""
+    system, evidence = result.certification.system, result.certification.evidence
+    register = register_of(result.certification.granted, result.loaded.spec)
+    names = "; ".join(dict.fromkeys(item.kind.name for item in register))
+    granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
+    if evidence is None:
+        said = "Neither proved nor refuted: this report makes no statement about stability."
+        if (where := result.certification.refuted_in) is not None:
+            said = (
+                f"Refuted {where}, where the environment would have to pull; with contact that may "
+                "be lost, neither proved nor refuted."
+            )
+        return said, f"What was searched for would have taken for granted: {names}."
+    if evidence.shows is Shows.STABILITY:
+        return _proved(result), granted
+    (witness,) = (b for s, b in result.briefs if s is evidence)
+    exact = ", for exact arithmetic" if system.roundings else ""
+    return f"Refuted: {witness}{exact}: no guarantee of stability is possible.", granted
+
+
+def _proved(result: Result) -> str:
+    """Say what the terminal says of what is proved, and beside it what is not."""
+    certification, ranged = result.certification, result.loaded.spec.has_ranges
+    system, evidence = certification.system, certification.evidence
+    said = {s.shows: brief for s, brief in reversed(result.briefs)}
+    kept = any(catalogue_kind(item).id == CONTACT_KEPT for item in system.assumptions)
+    once = evidence is None or evidence.bounds_at_once
+    exact = evidence is None or not evidence.covers_rounding
+    notes = (
+        (", as long as contact is kept", kept and system.contact is None),
+        (", up to one constant factor", not once),
+        (", for a law computed without rounding", bool(system.roundings) and exact),
+        (", for all values in the declared ranges", ranged),
+    )
+    saturated, bounded = system.saturation is not None, Shows.BOUND in said
+    begin = "while no signal saturates, " if saturated else ""
+    first = said[Shows.STABILITY] + "".join(text for text, applies in notes if applies)
+    others = [brief for s, brief in result.briefs if s.shows in (Shows.BOUND, Shows.REGION)]
+    if saturated and Shows.REGION not in said:
+        others.append("where signals saturate, nothing is proved")
+    if system.channels and not bounded:
+        others.append("no bound under the disturbances of the spec is proved")
+    return f"Proved: {begin}{'; '.join((first, *others))}."
+
+
+def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
+    """Return the lights for proof, goals, design, doubts of the data and open assumptions."""
+    state, text = _PROOF[Verdict(result.certification.verdict)]
+    if (where := result.certification.refuted_in) is not None:
+        text = f"{text}; refuted {where}"
+    proof = Light("Proof", state, text, MEANT)
+    spec = result.loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return (proof, _open(result))
+    goals = Light("Goals", *judged_goals(result, analysis), GOALS)
+    return (proof, goals, _warnings(analysis), _data(spec), _open(result))
+
+
+def _warnings(analysis: DesignAnalysis | None) -> Light:
+    if analysis is None:
+        return Light("Design", State.BAD, "a nominal loop is unstable")
+    state, text = State.GOOD, "no warning (floating point, no part of the proof)"
+    if count := len(analysis.warnings):
+        state, text = State.DOUBTFUL, f"{counted(count, 'warning')} (no part of the proof)"
+    return Light("Design", state, text, GOALS)
+
+
+def _data(spec: InteractionDesignSpec) -> Light:
+    items = [item for item in spec.identified.values() if item.provenance or item.doubts]
+    doubted = [item for item in items if item.doubts]
+    doubts = counted(sum(len(item.doubts) for item in doubted), "doubt")
+    state, text = State.GOOD, "the spec names measured records, no doubts"
+    if not items:
+        state, text = State.UNKNOWN, "no value names the records that it was identified from"
+    elif any(item.accept_doubt is None for item in doubted):
+        state, text = State.BAD, f"{doubts}, not accepted"
+    elif doubted:
+        state, text = State.DOUBTFUL, f"{doubts}, accepted with a reason"
+    elif any(source.data == "synthetic" for item in items for source in item.provenance):
+        state, text = State.DOUBTFUL, "SYNTHETIC records, not measured"
+    return Light("Data", state, text, ASSUMPTIONS)
+
+
+def _open(result: Result) -> Light:
+    found = register_of(result.certification.granted, result.loaded.spec)
+    count = sum(item.standing == "open" for item in found)
+    state = State.DOUBTFUL if count else State.GOOD
+    text = f"{count} of {len(found)} open: to be tested on the robot"
+    return Light(ASSUMPTIONS, state, text, ASSUMPTIONS)
+
+
+TESTS = "What to test on the robot"
+# Digits that are read at a glance.
+_DIGITS = 4
+
+
+def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
+    """Return labels and values for the head of the page, each on the safe side."""
+    return (
+        *_worst(analysis),
+        *_modes(result),
+        *_force(result),
+        *_gains(result),
+        *_achieved(analysis),
+    )
+
+
+def tests_section(result: Result) -> Section | None:
+    """List the open assumptions, each with its test; None where all are tested or argued."""
+    found = register_of(result.certification.granted, result.loaded.spec)
+    kinds = dict.fromkeys(item.kind for item in found if item.standing == "open")
+    tests = tuple(f"{kind.name}: {kind.test}" for kind in kinds if kind.id)
+    if not tests:
+        return None
+    text = f"{len(tests)} kinds of assumptions are neither tested nor argued. Each has a test:"
+    return Section(TESTS, (Paragraph(text), Bullets("", tests)))
+
+
+def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
+    """Yield what is furthest beyond a limit, and how much else is doubtful."""
+    doubts = () if analysis is None else analysis.warnings
+    if doubts and doubts[0].beyond:
+        more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
+        yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
+
+
+def _modes(result: Result) -> Iterator[tuple[str, str]]:
+    if isinstance(result.loaded.spec, InteractionDesignSpec):
+        return
+    system = result.certification.system
+    names = shortened([mode.name for mode in system.modes], 4)
+    yield "Modes", Derived(f"{names}; {system.time} time", MODES)
+
+
+def _force(result: Result) -> Iterator[tuple[str, str]]:
+    system = result.certification.system
+    spec = result.loaded.spec
+    if not isinstance(spec, InteractionDesignSpec):
+        return
+    bound = bound_on(system, result.certification.statements, "force")
+    text = "not bounded: no disturbance is declared" if not system.channels else "no bound proved"
+    if bound is not None:
+        size = f"{upper(bound.level, _DIGITS)} {bound.output.unit}"
+        text = f"{size} at most, under the declared disturbances"
+    yield "Largest force", Derived(text, EVIDENCE)
+
+
+def _gains(result: Result) -> Iterator[tuple[str, str]]:
+    design = result.design
+    if design is None:
+        return
+    for controller in design.controllers:
+        units = design.units.get(controller.name, {})
+        said = ", ".join(
+            f"{gain} {float(value):.6g} {units.get(gain, '')}".rstrip()
+            for gain, value in controller.law.gains.items()
+        )
+        if said:
+            yield f"Gains of {controller.name}", Derived(said, "Designed gains")
+
+
+def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
+    if analysis is None or not analysis.impedance:
+        return
+    known = [item for item in analysis.impedance if not math.isnan(item.lowest_limit)]
+    if known:
+        weakest = min(known, key=lambda item: item.lowest_limit)
+        arm = weakest.limit_at_arm
+        limit, per = (weakest.lowest_limit, unit("N*m/rad")) if arm is None else (arm, "N/m")
+        size = "any stiffness" if math.isinf(limit) else f"{lower(Fraction(limit), _DIGITS)} {per}"
+        yield "Stands up to", Derived(f"{size} ({weakest.name}; floating point)", GOALS)
+    if [*_worst(analysis)]:
+        return
+    worst = max(analysis.impedance, key=lambda item: item.worst(SENSITIVITY_PEAK).value)
+    value = SENSITIVITY_PEAK.text(worst.worst(SENSITIVITY_PEAK).value)
+    said = f"sensitivity peak {value} ({worst.name}; usual: {SENSITIVITY_PEAK.usual})"
+    yield "Worst margin", Derived(said, GOALS)

@@ -8,7 +8,6 @@ from typing import Any
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.tables import print_table
-from nrs_design.robot.cli.options import Figures, write_figures
 
 _COLUMNS = {
     "arm_mass": ("M_c [g]", 1e3),
@@ -22,24 +21,17 @@ _COLUMNS = {
 @command("robot-balance")
 def balance(
     spec: SpecFile,
-    figures: Figures = None,
 ) -> Answer:
     """Compute the passive balance, and the torque that remains over the workspace.
 
     Example: nrs-design robot balance specs/robots/neuroboscope.nrs.yaml
     """
-    from nrs_design.robot.models import design_balance, examine_balance
+    from nrs_design.robot.models.balance import design_balance, examine_balance
     from nrs_design.robot.pipeline import run_robot
 
     loaded, robot_spec, robot = run_robot(spec)
     wanted = design_balance(robot_spec, robot)
     torques = examine_balance(robot, wanted)
-    files: list[str] = []
-    if figures is not None:
-        from nrs_design.robot.reporting.figures.robot import draw_balance
-
-        drawn = draw_balance(torques.gravity, torques.residual)
-        files = write_figures(figures, {"balance": drawn})
     content: dict[str, Any] = {
         "tilt": wanted.tilt,
         "left": asdict(wanted.left),
@@ -47,7 +39,6 @@ def balance(
         "without_balance": torques.summary(torques.gravity),
         "with_balance": torques.summary(torques.residual),
         "units": {"mass": "kg", "distance": "m", "stiffness": "N/m", "torque": "N*m"},
-        "files": files,
     }
     return Answer(lambda: loaded.facts | content, lambda: _print(content))
 

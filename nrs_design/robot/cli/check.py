@@ -21,7 +21,7 @@ def check(spec: SpecFile) -> Answer:
     Example: nrs-design robot check specs/robots/neuroboscope.nrs.yaml
     """
     from nrs_design.pipeline.design import placed
-    from nrs_design.robot.models import examine_inertia, survey_workspace
+    from nrs_design.robot.models.workspace import examine_inertia, survey_workspace
     from nrs_design.robot.pipeline import run_robot
 
     loaded, _, robot = run_robot(spec)

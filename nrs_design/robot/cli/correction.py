@@ -11,10 +11,10 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
-from nrs_design.robot.cli.options import Figures, lists, write_figures
+from nrs_design.robot.cli.options import lists
 
 if TYPE_CHECKING:
-    from nrs_design.robot.models import Correction, SeparateCorrection, Sine, TiltTable
+    from nrs_design.robot.models.correction import Correction, Sine, TiltTable
 
 
 @command("robot-correction")
@@ -26,20 +26,16 @@ def correction(
             "--table", metavar="FILE", help="Write the coefficients by tilt, for the controller."
         ),
     ] = None,
-    figures: Figures = None,
 ) -> Answer:
     """Compute correction coefficients over trajectories and over the tilt of the base.
 
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
     """
     from nrs_design.output import TABLE, check_place, write_output
-    from nrs_design.robot.models import (
+    from nrs_design.robot.models.correction import (
         DEPTH_SINES,
         TABLE_3_5,
-        correct_separately,
         correction_coefficients,
-        reachable_poses,
-        thesis_grid,
         thesis_tilts,
         tilt_tables,
         to_csv,
@@ -50,32 +46,17 @@ def correction(
         check_place(table, TABLE)
     loaded, _, robot = run_robot(spec)
     rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
-    groups = (DEPTH_SINES,) if figures is None else (DEPTH_SINES, TABLE_3_5)
-    tilts, *with_angles = tilt_tables(robot, thesis_tilts(), *groups)
-    apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
+    (tilts,) = tilt_tables(robot, thesis_tilts(), DEPTH_SINES)
     files: list[str] = []
-    if figures is not None:
-        from nrs_design.robot.reporting.figures.robot import draw_correction, draw_inertia_errors
-
-        drawn = draw_correction(tilts, *with_angles)
-        named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
-        files += write_figures(figures, named)
     if table is not None:
         write_output(table, to_csv(tilts), replaces=TABLE)
-        files.insert(0, str(table))
+        files.append(str(table))
         note(f"table written to {table}")
-
-    def show() -> None:
-        _print(rows, tilts)
-        _print_apart(apart)
-
-    facts = loaded.facts
-    return Answer(lambda: facts | _document(rows, tilts, apart) | {"files": files}, show)
+    facts = loaded.facts | _document(rows, tilts) | {"files": files}
+    return Answer(lambda: facts, lambda: _print(rows, tilts))
 
 
-def _document(
-    rows: list[tuple[Sine, Correction]], tilts: TiltTable, apart: SeparateCorrection
-) -> dict[str, Any]:
+def _document(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> dict[str, Any]:
     import numpy as np
 
     return {
@@ -99,15 +80,6 @@ def _document(
                 strict=True,
             )
         ],
-        "apart": {
-            **lists(apart, "gravity", "inertia_rows", "inertia_entries"),
-            "gravity_error": apart.gravity_error,
-            "inertia_error": {
-                "single": apart.single_error,
-                "rows": apart.rows_error,
-                "entries": apart.entries_error,
-            },
-        },
         "units": {"angles": "rad", "d": "m", "error": "N*m"},
     }
 
@@ -136,22 +108,5 @@ def _print(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> None:
             for tilt, ratio, squares in zip(
                 tilts.tilt[::5], tilts.mean_ratio[::5], tilts.least_squares[::5], strict=True
             )
-        ],
-    )
-
-
-def _print_apart(apart: SeparateCorrection) -> None:
-    def text(row: Any) -> str:
-        return ", ".join(f"{k:.4f}" for k in row)
-
-    entries = "; ".join(text(row) for row in apart.inertia_entries)
-    print_table(
-        "inertia and gravity apart, least squares over the poses of thesis 3.3",
-        ["coefficients", "values", "error [%]"],
-        [
-            ["gravity", text(apart.gravity), f"{100 * apart.gravity_error:.1f}"],
-            ["inertia, those of gravity", text(apart.gravity), f"{100 * apart.single_error:.1f}"],
-            ["inertia, by rows", text(apart.inertia_rows), f"{100 * apart.rows_error:.1f}"],
-            ["inertia, by entries", entries, f"{100 * apart.entries_error:.1f}"],
         ],
     )

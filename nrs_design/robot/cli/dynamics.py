@@ -14,7 +14,6 @@ from nrs_design.robot.cli.options import (
     ONE,
     POSE,
     Acceleration,
-    Figures,
     Pose,
     Tables,
     Tilt,
@@ -22,11 +21,10 @@ from nrs_design.robot.cli.options import (
     print_quantities,
     read_pose,
     three_numbers,
-    write_figures,
 )
 
 if TYPE_CHECKING:
-    from nrs_design.robot.models import Robot
+    from nrs_design.robot.models.robot import Robot
 
 TABLES: Tables = {
     POSE: {"pose": "pose [rad, rad, m]"},
@@ -52,7 +50,6 @@ def dynamics(
     velocity: Velocity = None,
     acceleration: Acceleration = None,
     tilt: Tilt = None,
-    figures: Figures = None,
 ) -> Answer:
     """Print M, G, Ms and Gs at a pose, and the torques of a motion; or the torque's shares.
 
@@ -77,10 +74,6 @@ def dynamics(
             three_numbers(velocity or "0,0,0", "--velocity"),
             three_numbers(acceleration or "0,0,0", "--acceleration"),
         )
-    if figures is not None:
-        from nrs_design.robot.reporting.figures.robot import draw_torque_shares
-
-        content["files"] = write_figures(figures, {"torque-shares": draw_torque_shares(robot)})
     facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
@@ -91,12 +84,12 @@ def _at_pose(
     velocity: tuple[float, float, float],
     acceleration: tuple[float, float, float],
 ) -> dict[str, Any]:
-    from nrs_design.robot.models import (
+    from nrs_design.robot.models.correction import simplified_dynamics
+    from nrs_design.robot.models.dynamics import (
         coriolis_matrix,
         gravity_torque,
         inverse_dynamics,
         mass_matrix,
-        simplified_dynamics,
     )
 
     simplified = simplified_dynamics(robot, pose)
@@ -115,7 +108,8 @@ def _at_pose(
 
 
 def _shares(robot: Robot) -> dict[str, Any]:
-    from nrs_design.robot.models import reachable_poses, thesis_grid, torque_shares
+    from nrs_design.robot.models.dynamics import torque_shares
+    from nrs_design.robot.models.workspace import reachable_poses, thesis_grid
 
     shares = torque_shares(robot, reachable_poses(robot, thesis_grid()))
     parts = asdict(shares)

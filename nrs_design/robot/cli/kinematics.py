@@ -13,18 +13,16 @@ from nrs_design.robot.cli.options import (
     LEGS,
     ONE,
     POSE,
-    Figures,
     Pose,
     Tables,
     lists,
     print_quantities,
     read_pose,
     three_numbers,
-    write_figures,
 )
 
 if TYPE_CHECKING:
-    from nrs_design.robot.models import Robot
+    from nrs_design.robot.models.robot import Robot
 
 TABLES: Tables = {
     POSE: {
@@ -56,13 +54,12 @@ def kinematics(
         str | None,
         typer.Option("--joints", metavar="T1,T2,T3", help="Joint angles in rad, for their pose."),
     ] = None,
-    figures: Figures = None,
 ) -> Answer:
     """Solve the kinematics at a pose or joint angles, or survey the workspace.
 
     Example: nrs-design robot kinematics specs/robots/neuroboscope.nrs.yaml --pose 0.1,-0.2,0.2
     """
-    from nrs_design.robot.models import direct_kinematics
+    from nrs_design.robot.models.kinematics import direct_kinematics
     from nrs_design.robot.pipeline import run_robot
 
     loaded, _, robot = run_robot(spec)
@@ -75,16 +72,12 @@ def kinematics(
         content = _at_pose(robot, read_pose(pose, robot))
     else:
         content = _workspace(robot)
-    if figures is not None:
-        from nrs_design.robot.reporting.figures.robot import draw_workspace
-
-        content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)})
     facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
 
 def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
-    from nrs_design.robot.models import (
+    from nrs_design.robot.models.kinematics import (
         inverse_jacobian,
         inverse_kinematics,
         jacobian,
@@ -106,7 +99,7 @@ def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
 
 
 def _workspace(robot: Robot) -> dict[str, Any]:
-    from nrs_design.robot.models import joint_peaks, survey_workspace, workspace_grid
+    from nrs_design.robot.models.workspace import joint_peaks, survey_workspace, workspace_grid
 
     survey = survey_workspace(robot)
     peaks = joint_peaks(robot, workspace_grid(robot))

@@ -4,27 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import PoseError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from matplotlib.figure import Figure
-
-    from nrs_design.robot.models import Robot
+    from nrs_design.robot.models.robot import Robot
 
 
-Figures = Annotated[
-    Path | None,
-    typer.Option("--figures", metavar="DIR", help="Draw into this folder, as SVG and PNG."),
-]
 Pose = Annotated[
     str | None,
     typer.Option("--pose", metavar="PHI,PSI,D", help="Pose in rad, rad and m, as in 0,0,0.2."),
@@ -76,22 +66,6 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
             remedy=f"depths are in m: {d:g} mm are {d / 1e3:g}",
         )
     return phi, psi, d
-
-
-def write_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
-    """Write every figure as SVG and PNG; return the files."""
-    from nrs_design.output import PNG, SVG, Output, write_outputs
-    from nrs_design.reporting.images import to_png, to_svg_file
-
-    outputs: list[Output] = []
-    for name, figure in figures.items():
-        outputs += [
-            (folder / f"{name}.svg", to_svg_file(figure), SVG),
-            (folder / f"{name}.png", to_png(figure), PNG),
-        ]
-    write_outputs(outputs)
-    note(f"figures written to {folder}")
-    return [str(path) for path, _, _ in outputs]
 
 
 # What the numbers of a row belong to.

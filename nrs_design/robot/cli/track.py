@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.cli.printing import progress, say
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
-from nrs_design.robot.cli.options import Figures, Tilt, write_figures
+from nrs_design.robot.cli.options import Tilt
 
 if TYPE_CHECKING:
-    from nrs_design.robot.models import Robot
-    from nrs_design.robot.simulation.tracking.record import TrackingRecord
+    from nrs_design.robot.models.robot import Robot
+    from nrs_design.robot.simulation.experiment import TrackingRecord
     from nrs_design.spec import RobotSpec
 
 ALL = "all"
@@ -61,15 +62,10 @@ def track(
         ),
     ] = None,
     tilt: Tilt = None,
-    ablation: Annotated[
-        bool,
-        typer.Option(
-            "--ablation",
-            help="Also compare computed torque and independent joints on the same motions (10 s, "
-            "or --period), with one thing changed at a time.",
-        ),
-    ] = False,
-    figures: Figures = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option("--figures", metavar="DIR", help="Draw into this folder, as SVG and PNG."),
+    ] = None,
 ) -> Answer:
     """Simulate the motion controllers of thesis 4.2 to 4.4 and compare their tracking errors.
 
@@ -78,33 +74,38 @@ def track(
     Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
     """
     from nrs_design.robot.pipeline import run_robot
-    from nrs_design.robot.simulation.tracking.simulate import LEFT_OUT
-    from nrs_design.robot.simulation.tracking.track import experiment_tilt
+    from nrs_design.robot.simulation.simulate import LEFT_OUT
+    from nrs_design.robot.simulation.track import experiment_tilt
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = robot.tilted(experiment_tilt(robot_spec) if tilt is None else math.radians(tilt))
     moved = None if experiment is ExperimentOption.ALL else experiment.value
     with progress("simulating") as tell:
         records = _records(robot_spec, robot, controller, moved, period, tell)
-        changes = _ablation(robot_spec, robot, moved, period, tell) if ablation else []
     runs = [_run(robot_spec, robot, record) for record in records]
     files: list[str] = []
     if figures is not None:
-        from nrs_design.robot.reporting.figures.tracking import draw_tracking
+        from nrs_design.output import PNG, SVG, Output, write_outputs
+        from nrs_design.reporting.images import to_png, to_svg_file
+        from nrs_design.robot.reporting.figures import draw_tracking
 
         drawn = draw_tracking(records, [run["measured_on_robot"] for run in runs])
-        files = write_figures(figures, {"tracking": drawn})
+        outputs: list[Output] = [
+            (figures / "tracking.svg", to_svg_file(drawn), SVG),
+            (figures / "tracking.png", to_png(drawn), PNG),
+        ]
+        write_outputs(outputs)
+        note(f"figures written to {figures}")
+        files = [str(path) for path, _, _ in outputs]
 
     def show() -> None:
         _print_runs(runs)
-        if ablation:
-            _print_ablation(changes)
         say("not modelled:")
         for line in LEFT_OUT:
             say(f"  - {line}")
 
     facts = loaded.facts
-    return Answer(lambda: facts | _document(robot, runs, changes) | {"files": files}, show)
+    return Answer(lambda: facts | _document(robot, runs) | {"files": files}, show)
 
 
 def _records(
@@ -115,8 +116,8 @@ def _records(
     period: float | None,
     tell: Progress,
 ) -> list[TrackingRecord]:
-    from nrs_design.robot.simulation.tracking.simulate import simulate
-    from nrs_design.robot.simulation.tracking.track import CONTROLLERS, build_track
+    from nrs_design.robot.simulation.simulate import simulate
+    from nrs_design.robot.simulation.track import CONTROLLERS, build_track
 
     names: tuple[str, ...] = (controller.value,)
     if controller is ControllerOption.ALL:
@@ -125,41 +126,19 @@ def _records(
     return simulate(tracks, tell=tell)
 
 
-def _ablation(
-    spec: RobotSpec,
-    robot: Robot,
-    moved: str | None,
-    period: float | None,
-    tell: Progress,
-) -> list[dict[str, Any]]:
-    from nrs_design.robot.simulation.tracking.simulate import simulate
-    from nrs_design.robot.simulation.tracking.track import ablation_tracks
-
-    rows = []
-    changed = [(name, one.only(moved)) for name, one in ablation_tracks(spec, robot, period)]
-    records = iter(simulate([one for _, one in changed], tell=tell))
-    for name, one in changed:
-        rmse = {each.moved: next(records).summary()["rmse"] for each in one.experiments}
-        rows.append({"controller": one.controller, "change": name, "rmse": rmse})
-    return rows
-
-
 def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
-    from nrs_design.robot.simulation.tracking.measured import measured_rmse
+    from nrs_design.robot.simulation.track import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)
     return record.summary() | {"measured_on_robot": measured}
 
 
-def _document(
-    robot: Robot, runs: list[dict[str, Any]], changes: list[dict[str, Any]]
-) -> dict[str, Any]:
-    from nrs_design.robot.simulation.tracking.simulate import LEFT_OUT
+def _document(robot: Robot, runs: list[dict[str, Any]]) -> dict[str, Any]:
+    from nrs_design.robot.simulation.simulate import LEFT_OUT
 
     return {
         "base_tilt": robot.base_tilt,
         "runs": runs,
-        "ablation": changes,
         "not_modelled": list(LEFT_OUT),
         "units": {"rmse": "deg, deg, mm", "command": "rpm", "time": "s", "base_tilt": "rad"},
     }
@@ -183,20 +162,3 @@ def _print_runs(runs: list[dict[str, Any]]) -> None:
         for run in runs
     ]
     print_table("root mean square of wanted less measured, simulated", columns, rows)
-
-
-def _print_ablation(changes: list[dict[str, Any]]) -> None:
-    """Print the errors of what moves, d in mm and angles in deg."""
-    from nrs_design.robot.simulation.tracking.experiment import COORDINATE
-
-    moved = list(changes[0]["rmse"])
-    units = ["mm" if name == "d" else "deg" for name in moved]
-    print_table(
-        "root mean square error of what moves, one thing changed at a time",
-        ["controller", "change", *(f"{m} [{u}]" for m, u in zip(moved, units, strict=True))],
-        [
-            [row["controller"], row["change"]]
-            + [f"{row['rmse'][name][COORDINATE[name]]:.4f}" for name in moved]
-            for row in changes
-        ],
-    )

@@ -1,1 +1,1 @@
-"""Choosing the gains of the motion control of a robot."""
+"""Motion control of the joints: the laws, and their gains."""

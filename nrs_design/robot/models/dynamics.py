@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.robot.models.body import Body
-from nrs_design.robot.models.geometry import LegPosture, Posture, posture
-from nrs_design.robot.models.link import (
+from nrs_design.robot.models.body import (
     FIXED,
+    Body,
     Direction,
     Plane,
     PlanePoint,
     first_moment,
     link_forces,
 )
+from nrs_design.robot.models.geometry import LegPosture, Posture, posture
 from nrs_design.robot.models.motion import LegMotion, RobotMotion, joint_driven
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array, Scalar, Vector, add, dot, scale, stacked

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import cos, sin
 
 import numpy as np
 
 from nrs_design.robot.models.body import MASSLESS, Body, rigid_body, slender_rod
 from nrs_design.robot.models.vectors import Array, Vector
-from nrs_design.spec import BodySpec, LegSpec, RobotSpec
+from nrs_design.spec import BodySpec, LegSpec, RobotSpec, parse_spec
+from nrs_design.spec.templates import TEMPLATES
 
 LEGS = ("left", "right", "middle")
 # From the platform's frame (x towards the middle leg, z along the endoscope) to the frame of the
@@ -166,3 +167,17 @@ def _body(spec: BodySpec, length: float, axis: int) -> Body:
     xy, xz, yz = (0.0 if q is None else q.si for q in (tensor.xy, tensor.xz, tensor.yz))
     rows = [[tensor.xx.si, xy, xz], [xy, tensor.yy.si, yz], [xz, yz, tensor.zz.si]]
     return rigid_body(spec.mass.si, center, rows)
+
+
+@cache
+def robot_spec() -> RobotSpec:
+    """Return the spec that `nrs-design init robot` writes."""
+    spec = parse_spec(TEMPLATES["robot"])
+    assert isinstance(spec, RobotSpec)
+    return spec
+
+
+@cache
+def robot() -> Robot:
+    """Return the robot on a level base."""
+    return build_robot(robot_spec())

@@ -31,7 +31,6 @@ from nrs_design.robot.models.balance import design_balance, examine_balance
 from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
-    correct_separately,
     correction_coefficients,
     thesis_tilts,
     tilt_tables,
@@ -39,15 +38,12 @@ from nrs_design.robot.models.correction import (
 from nrs_design.robot.models.robot import LEGS
 from nrs_design.robot.models.workspace import (
     examine_inertia,
-    reachable_poses,
     survey_workspace,
-    thesis_grid,
 )
-from nrs_design.robot.reporting.figures.robot import (
+from nrs_design.robot.reporting.figures import (
     JOINTS,
     draw_balance,
     draw_correction,
-    draw_inertia_errors,
     draw_torque_shares,
     draw_workspace,
 )
@@ -201,7 +197,6 @@ def _dynamics(robot: Robot) -> Section:
 def _correction(robot: Robot) -> Section:
     def drawn() -> tuple[Block, ...]:
         depth, every = tilt_tables(robot, thesis_tilts(), DEPTH_SINES, TABLE_3_5)
-        apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
         found = correction_coefficients(robot, TABLE_3_5)
         shown = found.mean_ratio, found.least_squares, found.least_squares_error
         rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *shown, strict=True))
@@ -217,12 +212,6 @@ def _correction(robot: Robot) -> Section:
                 "Correction over the tilt of the base",
                 "For motions of the depth alone, and with the angles.",
                 draw_correction(depth, every),
-            ),
-            Illustration(
-                "inertia-errors",
-                "Error of the corrected mass matrix",
-                "With the coefficients of gravity, and with coefficients of its own.",
-                draw_inertia_errors(apart),
             ),
         )
 

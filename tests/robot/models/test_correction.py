@@ -10,14 +10,10 @@ from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
     correct,
-    correct_separately,
     correction_coefficients,
     tilt_tables,
     to_csv,
 )
-from nrs_design.robot.models.dynamics import gravity_torque, mass_matrix
-from nrs_design.robot.models.simplified import simplified_dynamics
-from nrs_design.robot.models.workspace import thesis_grid
 
 
 def test_table_for_the_controller(robot):
@@ -63,19 +59,3 @@ def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatc
     assert len(moved) == len(tilts) * len({*DEPTH_SINES, *TABLE_3_5})
     row = correction_coefficients(robot.tilted(tilts[0]), TABLE_3_5)
     assert (together[1].mean_ratio[0] == row.mean_ratio).all()
-
-
-POSES = thesis_grid()[::7]
-
-
-def test_no_other_coefficients_leave_less(robot):
-    found = correct_separately(robot, POSES)
-    M, Ms = mass_matrix(robot, POSES), simplified_dynamics(robot, POSES).Ms
-    G, Gs = gravity_torque(robot, POSES), simplified_dynamics(robot, POSES).Gs
-    for step in (-0.01, 0.01):
-        for k in range(3):
-            unit = np.eye(3)[k]
-            gravity = np.linalg.norm(G - (found.gravity + step * unit) * Gs)
-            assert gravity > found.gravity_error * np.linalg.norm(G)
-            rows = np.linalg.norm(M - (found.inertia_rows + step * unit)[:, None] * Ms)
-            assert rows > found.rows_error * np.linalg.norm(M)

@@ -8,6 +8,7 @@ from hypothesis import given
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.robot.models.body import MASSLESS, point_mass
+from nrs_design.robot.models.correction import simplified_dynamics
 from nrs_design.robot.models.dynamics import (
     coriolis_matrix,
     gravity_torque,
@@ -19,7 +20,6 @@ from nrs_design.robot.models.dynamics import (
 )
 from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
 from nrs_design.robot.models.robot import Workspace
-from nrs_design.robot.models.simplified import simplified_dynamics
 from nrs_design.robot.models.workspace import examine_inertia
 
 from .strategies import poses, rates, tilts

@@ -32,7 +32,7 @@ def blocks(report, kind):
 
 def test_its_figures_and_lights(robot_page):
     assert [item.name for item in blocks(robot_page, Illustration)] == [
-        "workspace", "torque-shares", "correction", "inertia-errors", "balance",
+        "workspace", "torque-shares", "correction", "balance",
     ]  # fmt: skip
     assert [(light.name, str(light.state)) for light in robot_page.lights] == [
         ("Reach", "bad"),

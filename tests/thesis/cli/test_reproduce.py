@@ -1,8 +1,6 @@
 """``nrs-design reproduce`` as typed."""
 
 import json
-import subprocess
-import sys
 from dataclasses import replace
 
 import pytest
@@ -64,28 +62,3 @@ def test_a_page_is_named_as_one(tmp_path):
     done = run("--html", str(tmp_path / "table.txt"))
     assert "is not the name of a page in HTML" in str(done.exception)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.slow
-def test_figures_are_written_beside_the_table_and_linked(tmp_path):
-    page, folder = tmp_path / "reports" / "table.html", tmp_path / "reports" / "the figures"
-    command = [sys.executable, "-m", "nrs_design", "reproduce", "--json", "--html", str(page)]
-    done = subprocess.run(
-        [*command, "--figures", str(folder)], capture_output=True, text=True, check=True
-    )
-    found = json.loads(done.stdout)["figures"]
-    drawn = {name for one in found for name in one["figures"]}
-    # Schemes, pictures, and a locus that a report draws.
-    assert {f"6.{n}" for n in range(14, 35)} - drawn == {"6.17", "6.23", "6.24", "6.25", "6.28"}
-    gallery = folder / "figures.html"
-    assert 'href="the%20figures/figures.html"' in page.read_text(encoding="utf-8")
-    first = gallery.read_bytes()
-    runs = {name for one in found for name in one["runs"]}
-    assert {path.name for path in folder.iterdir()} == {"figures.html", *runs}
-    head = (folder / "figure-6-14.csv").read_text(encoding="utf-8").partition("\n")[0]
-    assert head.startswith("time_s,angle_rad,velocity_rad_s,torque_Nm,")
-    # Over what is ours, and the same bytes.
-    again = [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--figures", str(folder)]
-    told = subprocess.run(again, capture_output=True, text=True, check=True)
-    assert told.stdout == ""
-    assert gallery.read_bytes() == first

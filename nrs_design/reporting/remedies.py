@@ -1,0 +1,206 @@
+"""What would help: margins of a proof, and next steps where there is none, as commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from pathlib import Path
+from shlex import quote
+from typing import TYPE_CHECKING
+
+from nrs_design.axis import unit as shown_unit
+from nrs_design.certificates.certificate import Verdict, refutes_in_contact
+from nrs_design.pipeline.blocked import blocked_lines
+from nrs_design.pipeline.certification import Result, find_relief
+from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.proof.mode import Time
+from nrs_design.reporting.document import Block, Bullets, Section
+from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec, RobotSpec
+
+if TYPE_CHECKING:
+    from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.search.loop_margin import Bracket
+    from nrs_design.spec import Spec
+    from nrs_design.spec.misses import MissRuleSpec
+
+REMEDIES = "What would help"
+MARGINS = "Margins of the proof"
+_DESIGN = (
+    "Change the design: narrower parameter ranges or fewer contacts per controller, more damping, "
+    "modes that are more alike; a longer dwell time or fewer transitions, where the machine can "
+    "enforce them."
+)
+
+
+def remedies_section(
+    result: Result,
+    margins: ProofMargins | None,
+    blocked: Blocked | None = None,
+) -> Section | None:
+    """Report the margins of the proof and the next steps; None without either."""
+    blocks: list[Block] = []
+    if relief := find_relief(result):
+        blocks.append(Bullets("Gains that would hold", relief))
+    if blocked is not None:
+        why = blocked_lines(blocked, Path(result.loaded.path.name))
+        blocks.append(Bullets("Why it is not proved", why))
+    lines = () if margins is None else tuple(margin_lines(margins, result.loaded.spec))
+    if lines:
+        said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
+        blocks.append(Bullets("How far a proof reaches", said))
+    box = margins is not None and margins.box is not None
+    dwell = margins is not None and margins.dwell is not None
+    steps = next_steps(result, margin=box, shortest_dwell=dwell)
+    if steps:
+        blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
+    return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
+
+
+def margin_lines(margins: ProofMargins, spec: Spec) -> Iterator[str]:
+    """Yield a sentence, in small letters and without its full stop, for each margin."""
+    yield from _box_lines(margins)
+    yield from _loop_lines(margins)
+    yield from _dwell_lines(margins)
+    yield from _misses_lines(margins, spec)
+
+
+def _box_lines(margins: ProofMargins) -> Iterator[str]:
+    box = margins.box
+    if box is None:
+        return
+    beyond = f"; {box.end}" if box.end else ""
+    if box.refuted is not None:
+        beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted{_in(box.refuted_in)}"
+    if box.proved is None or box.proof is None:
+        yield f"largest box: not even the nominal values are proved{beyond}"
+        return
+    yield (
+        f"largest box: scaled by {rounded_down(box.proved)} about their nominal values, all ranges "
+        f"are proved ({box.proof.method}){beyond}"
+    )
+
+
+def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
+    dwell = margins.dwell
+    if dwell is None:
+        return
+    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    if dwell.proved is not None and dwell.proof is not None:
+        proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
+    refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
+    if dwell.refuted is not None:
+        end = rounded_down(dwell.refuted, "s")
+        refuted = f"; {end} and all shorter ones are refuted{_in(dwell.refuted_in)}"
+    yield f"shortest dwell time: {proved}{refuted}"
+
+
+def _misses_lines(margins: ProofMargins, spec: Spec) -> Iterator[str]:
+    """State the most misses that are proved, and the fewest that are refuted."""
+    rule: MissRuleSpec | None
+    if spec.kind == "switched-system":
+        rule, what = spec.misses, "steps"
+    else:
+        sampling = spec.sampling if spec.kind == "interaction-design" else None
+        rule, what = None if sampling is None else sampling.misses, "periods"
+    if rule is None or margins.misses is None:
+        return
+    where = " in a row" if rule.of is None else f" of any {rule.of} {what} in a row"
+    said = _ends(margins.misses, str, f"proved up to *{where}", "refuted from * on")
+    yield f"most missed deadlines: {said}"
+
+
+def _loop_lines(margins: ProofMargins) -> Iterator[str]:
+    loop = margins.loop
+    if loop is None:
+        return
+    more = "" if loop.command is None else "; without disturbances, no bound was looked at"
+    if loop.delay is not None:
+        refuted = f"refuted from *{_in(loop.delay.refuted_in)}"
+        said = _ends(loop.delay, _samples, "proved up to *", refuted)
+        yield f"longest delay of the force sample: {said}{more}"
+    if loop.period is not None:
+        refuted = f"* is refuted{_in(loop.period.refuted_in)}"
+        said = _ends(loop.period, lambda seconds: nearly(seconds, "s"), "* is proved", refuted)
+        yield f"period: {said} (each for itself, nothing is said of those in between{more})"
+    if loop.command is not None:
+        bounds = loop.command.bounds.items()
+        kept = ", ".join(
+            f"|{name}| <= {rounded_down(end, unit)}" for name, (end, _, unit) in bounds
+        )
+        broken = ", ".join(nearly(end, unit) for _, (_, end, unit) in bounds)
+        yield (
+            f"limit of {nearly(loop.command.limit, shown_unit('N*m'))}: proved to be kept for "
+            f"{kept}; a simulated run reaches it at {broken}"
+        )
+
+
+def _ends(bracket: Bracket, shown: Callable[[Fraction], str], proved: str, refuted: str) -> str:
+    """Return what is proved and what is refuted; a star in these texts is where the number stands.
+
+    Where nothing is refuted, say where the search ended.
+    """
+    first, second = bracket.proved, bracket.refuted
+    holds = "none is proved" if first is None else proved.replace("*", shown(first), 1)
+    fails = bracket.end if second is None else refuted.replace("*", shown(second), 1)
+    return f"{holds}, {fails}"
+
+
+def _in(contact: str) -> str:
+    """Say in which contact alone something is refuted, if it is not in any."""
+    return f" {contact}" if contact else ""
+
+
+def _samples(count: Fraction) -> str:
+    return f"{count} sample{'s' * (count != 1)}"
+
+
+def next_steps(
+    result: Result,
+    *,
+    margin: bool = False,
+    shortest_dwell: bool = False,
+    spec: Path | None = None,
+) -> tuple[str, ...]:
+    """Return next steps, the most promising first; none where stability is proved.
+
+    What was looked for just now need not be told to be. Without its path, a spec is named by file
+    name alone, which is the same wherever it lies.
+    """
+    verdict = result.certification.verdict
+    if verdict is Verdict.PROVED:
+        return ()
+    name = quote(str(spec or result.loaded.path.name))
+    steps = _steps(result, name, margin, shortest_dwell)
+    return (*steps, "Do not ship this design: a gate must treat it as a failure.")
+
+
+def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Iterator[str]:
+    certification, spec = result.certification, result.loaded.spec
+    command = f"nrs-design certify-switching {name}"
+    evidence = certification.evidence
+    evidence = evidence or refutes_in_contact(certification.system, certification.statements)
+    alone = evidence is not None and evidence.names_unstable_mode
+    if alone:
+        yield (
+            "A mode is not stable by itself, so no rule of switching helps: change the gains of "
+            "its controller, or narrow the range that makes it unstable."
+        )
+    if certification.verdict is Verdict.INCONCLUSIVE:
+        yield f"Search longer: {command} --budget 600 (or more --memory, or a --max-degree)"
+    if spec.has_ranges and not margin:
+        yield f"Find the largest ranges that are proved: {command} --margin"
+    if not alone and not shortest_dwell and _takes_dwell(result):
+        yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
+    if isinstance(spec, InteractionDesignSpec):
+        chosen = any(isinstance(c, ImpedanceControllerSpec) for c in spec.controllers.values())
+        command = "optimize" if chosen else "tune"
+        yield f"See which gains the goals allow: nrs-design {command} {name}"
+
+
+def _takes_dwell(result: Result) -> bool:
+    """Tell whether a shortest dwell time can be searched."""
+    spec, system = result.loaded.spec, result.certification.system
+    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    lasting = len(system.lasting_modes()) == len(system.modes)
+    return system.time is Time.CONTINUOUS and lasting and spec.find_dwell_obstacle() is None

@@ -1,0 +1,231 @@
+"""Chapters 3 and 4 about the robot: kinematics, dynamics, correction, balance, tracking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+
+from nrs_design.robot.models.balance import LegBalance, design_balance
+from nrs_design.robot.models.body import slender_rod
+from nrs_design.robot.models.correction import (
+    DEPTH_SINES,
+    TABLE_3_5,
+    WHOLE_WORKSPACE,
+    Correction,
+    correction_coefficients,
+    simplified_dynamics,
+)
+from nrs_design.robot.models.dynamics import mass_matrix, torque_shares
+from nrs_design.robot.models.geometry import direction
+from nrs_design.robot.models.kinematics import (
+    inverse_jacobian,
+    inverse_kinematics,
+    orientation,
+    orientation_jacobian,
+)
+from nrs_design.robot.models.robot import Robot, robot, robot_spec
+from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
+from nrs_design.robot.simulation.experiment import MOTIONS
+from nrs_design.robot.simulation.track import MEASURED
+from nrs_design.thesis import thesis
+from nrs_design.thesis.comparison import (
+    Found,
+    PrintedRow,
+    Recomputed,
+    ReproducedValue,
+    judge,
+    printed_rows_of,
+)
+
+POSE = (0.1, -0.2, 0.2)
+_ROUNDING = 1e-12
+# In 1/s: both accelerations of the task that 3.3 prints over their speeds.
+ACCELERATION_PER_SPEED = 3.7
+
+
+def robot_kinematics() -> Iterator[Found]:
+    """Recompute the crank angle, the orientation and the joint speeds."""
+    ours = robot()
+    yield float(inverse_kinematics(ours, POSE)[2])
+    space = ours.workspace
+    poses = pose_grid([0.0], (-space.psi, 0.0, space.psi), np.linspace(*space.d, 101))
+    crank = np.degrees(inverse_kinematics(ours, poses)[..., 2])
+    yield float(crank.min()), float(crank.max())
+    yield from _orientation()
+    yield from _speeds(ours)
+
+
+def _orientation() -> Iterator[Recomputed]:
+    pose = np.array(POSE)
+    W = np.array(direction(pose))
+    phi, psi, _ = POSE
+    printed = _pointing(phi, float(np.arcsin(np.sin(psi) / np.cos(phi))))
+    x, y, _ = orientation(pose)
+    ours, theirs = (float(np.abs(z - W).max()) for z in (_pointing(float(x), float(y)), printed))
+    yield Recomputed(None, ours < _ROUNDING < theirs, (f"{theirs:.2g}",))
+    step = 1e-6
+    slopes = np.stack(
+        [
+            (orientation(pose + step * unit) - orientation(pose - step * unit)) / (2 * step)
+            for unit in np.eye(3)
+        ],
+        axis=-1,
+    )
+    J = orientation_jacobian(pose)
+    exchanged = np.abs(J[[1, 0, 2]] - slopes).max()
+    yield Recomputed(holds=bool(np.abs(J - slopes).max() < 1e-8 < exchanged))
+
+
+def _pointing(x: float, y: float) -> Array:
+    """Third column of Rx(x) Ry(y)."""
+    return np.array([np.sin(y), -np.sin(x) * np.cos(y), np.cos(x) * np.cos(y)])
+
+
+def _speeds(ours: Robot) -> Iterator[Found]:
+    limits, per_speed = ours.task_limits, ACCELERATION_PER_SPEED
+    yield float(np.degrees(limits.angular_velocity))
+    yield per_speed * limits.angular_velocity, 1e3 * per_speed * limits.linear_velocity
+    v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
+    depths = np.linspace(*ours.workspace.d, 1001)
+    upright = np.stack([0 * depths, 0 * depths, depths], axis=-1)
+    crank = np.abs(inverse_jacobian(ours, upright) @ v)[:, 2]
+    yield Recomputed(float(crank.min()), facts=(f"{1e3 * depths[crank.argmin()]:.0f}",))
+    peaks = joint_peaks(ours, thesis_grid())
+    yield tuple(float(speed) for speed in peaks.velocity)
+    largest = ", ".join(f"{value:.2f}" for value in peaks.acceleration)
+    yield Recomputed(per_speed * 2.0094, facts=(largest,))
+
+
+def robot_dynamics() -> Iterator[Found]:
+    """Recompute torque shares and inertia ratios, and what the place of the platform does."""
+    ours = robot()
+    poses = thesis_grid()
+    yield tuple(100 * share for share in torque_shares(ours, poses).means)
+    # The 36.7 mm of table 3.1, read both ways.
+    lateral, axial = (
+        float(
+            correction_coefficients(
+                replace(ours, platform=slender_rod(ours.platform.mass, place, 0.25, 2)),
+                TABLE_3_5[0],
+            ).mean_ratio[0]
+        )
+        for place in ((0.0367, 0.0, 0.010), (0.0, 0.0, 0.0367))
+    )
+    yield Recomputed((lateral, axial), abs(lateral - 1.8318) < 0.1 * abs(axial - 1.8318))
+    right = simplified_dynamics(ours, poses).Ms
+    printed = simplified_dynamics(ours, poses, printed=True).Ms
+    scale = np.abs(right).max(axis=(-1, -2), keepdims=True)
+    worst = float((np.abs(printed - right) / scale).max())
+    yield Recomputed(None, 1e-4 < worst < 1e-2, (f"{100 * worst:.2g}",))
+    reflected = 1 / (905**2 * thesis.MOTOR.inertia)
+    full = float(mass_matrix(ours, ours.home)[0, 0])
+    facts = (f"{full:.4f}", f"{100 * full * reflected:.1f}")
+    yield Recomputed(100 * 0.055 * reflected, facts=facts)
+
+
+# theta4 in deg of tables 3.7 and of 4.19.
+TILTS = (-10.0, -28.5, -40.0, -70.0)
+
+
+def correction() -> Iterator[Recomputed]:
+    """Recompute tables 3.5 and 3.7 along slow sines in phase."""
+    for sine in TABLE_3_5:
+        yield Recomputed(_ratios(correction_coefficients(robot(), sine)))
+    found = correction_coefficients(robot(), WHOLE_WORKSPACE)
+    yield Recomputed(facts=(_text(found.mean_ratio), _text(found.least_squares)))
+    table = [row.printed for row in printed_rows_of("correction") if row.section == "table 3.5"]
+    texts = (row.split(", ") if isinstance(row, str) else row for row in table)
+    means = np.array([[float(k) for k in row] for row in texts]).mean(axis=0)
+    yield Recomputed(tuple(map(float, means)))
+    for degrees in TILTS:
+        tilted = robot().tilted(float(np.radians(degrees)))
+        depth = correction_coefficients(tilted, DEPTH_SINES)
+        angles = correction_coefficients(tilted, TABLE_3_5)
+        yield Recomputed(_ratios(depth)[:2])
+        yield Recomputed(facts=tuple(f"{found.mean_ratio[2]:.3f}" for found in (depth, angles)))
+
+
+def _ratios(found: Correction) -> tuple[float, ...]:
+    return tuple(map(float, found.mean_ratio))
+
+
+def _text(numbers: object) -> str:
+    return ", ".join(f"{number:.4f}" for number in np.ravel(np.asarray(numbers, dtype=float)))
+
+
+_BECAUSE = "it was measured on the robot; `nrs-design robot track` shows simulated errors beside it"
+
+
+def tracking() -> tuple[float]:
+    """Recompute the period of half of the measurements."""
+    return (2 * pi / 0.0571,)
+
+
+def measured() -> Iterator[ReproducedValue]:
+    """List the root mean square errors of tables 4.2 to 4.10."""
+    for controller, tables, prints in MEASURED:
+        for moved, table, printed in zip(MOTIONS, tables, prints, strict=True):
+            name = f"tracking RMSE of phi, psi, d; {controller}, {moved} moves"
+            row = PrintedRow(
+                "not reproducible",
+                name,
+                f"table {table}",
+                printed,
+                "deg, deg, mm",
+                because=_BECAUSE,
+            )
+            yield judge(row, Recomputed())
+
+
+# Thesis 4.4: M_c and M_b in g, k in N/mm, of the left and the right leg.
+LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
+# Printed arms of the counter-masses and payload of a leg, in m and kg.
+ARM, COUPLER, PAYLOAD = 0.115, 0.220, 0.4428
+
+
+def passive_balance() -> Iterable[Found]:
+    """Recompute counter-masses, springs and the misprinted lengths."""
+    ours = design_balance(robot_spec(), robot())
+    left, arm = ours.left, robot().legs[0]
+    moment = 1e-3 * LEFT[0] * left.arm_distance - PAYLOAD * arm.l3
+    return (
+        *_leg(left),
+        *_leg(ours.right),
+        1e6 * left.arm_mass * left.arm_distance / LEFT[0],
+        1e6 * left.coupler_mass * left.coupler_distance / LEFT[1],
+        *(
+            leg.stiffness * leg.spring_on_crank / printed[2]
+            for leg, printed in ((left, LEFT), (ours.right, RIGHT))
+        ),
+        1e3 * moment / arm.arm.mass,
+    )
+
+
+def _leg(ours: LegBalance) -> Iterator[Recomputed]:
+    """Yield masses, distance and spring of a leg, with what the printed arms would give."""
+    rounded = _with_printed_arms(ours)
+    for mass in ("arm_mass", "coupler_mass", "total_mass"):
+        without = f"{1e3 * getattr(rounded, mass):.1f}"
+        yield Recomputed(1e3 * getattr(ours, mass), facts=(without,))
+    yield Recomputed(1e3 * ours.total_distance)
+    yield Recomputed(1e-3 * ours.stiffness, facts=(f"{1e-3 * rounded.stiffness:.4f}",))
+
+
+def _with_printed_arms(ours: LegBalance) -> LegBalance:
+    """Return the balance with 115 and 220 mm in place of the fitted arms; same moments."""
+    M_c = ours.arm_mass * ours.arm_distance / ARM
+    more = robot().legs[0].l2 * (M_c - ours.arm_mass)
+    M_b = (ours.coupler_mass * ours.coupler_distance + more) / COUPLER
+    added = M_c - ours.arm_mass + M_b - ours.coupler_mass
+    moment = ours.total_mass * ours.total_distance + added * robot().legs[0].l1
+    return replace(
+        ours,
+        arm_mass=M_c,
+        coupler_mass=M_b,
+        total_mass=ours.total_mass + added,
+        stiffness=ours.stiffness * moment / (ours.total_mass * ours.total_distance),
+    )

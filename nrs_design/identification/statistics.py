@@ -162,22 +162,6 @@ def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
     return float(stdtrit(degrees, 0.5 + confidence / 2))
 
 
-def quotients(
-    found: tuple[float, float], covariance: Array, quantile: float
-) -> tuple[float, float]:
-    """Return the ends of the interval of dividend over divisor, found in this order: divisor first.
-
-    All quotients that the estimates do not reject, which is exact where both are normal (Fieller
-    1954). Where the divisor may be 0, all quotients are taken, which errs to the wide side.
-    """
-    # (y - r x)^2 <= t^2 (Vyy - 2 r Vxy + r^2 Vxx) is quadratic in the quotient r.
-    (xx, xy), (_, yy) = np.outer(found, found) - quantile**2 * covariance
-    if not xx > 0:
-        return -math.inf, math.inf
-    root = math.sqrt(max(xy**2 - xx * yy, 0.0))
-    return float((xy - root) / xx), float((xy + root) / xx)
-
-
 def tolerance_factor(count: int, share: float, confidence: float) -> float:
     """Return how many standard deviations about the mean hold a share of a normal population.
 

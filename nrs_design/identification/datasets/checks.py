@@ -36,31 +36,8 @@ def find_gaps(time: Array) -> Flags:
     return np.asarray(steps > GAP * np.median(steps))
 
 
-def find_stretches(time: Array) -> tuple[slice, ...]:
-    """Return the rows between gaps, in order; one slice for a record without gaps."""
-    return tuple(slice(a, b) for a, b in parted(find_gaps(time)))
-
-
-def long_stretches(time: Array) -> tuple[slice, ...]:
-    """Return the stretches that are long enough for a fit."""
-    return tuple(rows for rows in find_stretches(time) if rows.stop - rows.start >= FEWEST_ROWS)
-
-
-def pauses_text(time: Array) -> str | None:
-    """Say how a record is parted by pauses; None if it is not."""
-    if (count := len(find_stretches(time)) - 1) == 0:
-        return None
-    long = long_stretches(time)
-    spans = ", ".join(span(time[r.start], time[r.stop - 1], "s") for r in long)
-    left = len(time) - sum(rows.stop - rows.start for rows in long)
-    short = f"; {counted(left, 'sample')} in shorter stretches: left out" if left else ""
-    many = f"{count} pauses part the record" if count > 1 else "a pause parts the record"
-    use = "its stretches are fitted together" if len(long) > 1 else "this stretch is fitted"
-    return f"{many}: {use} ({spans}){short}"
-
-
-def check_time(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances, and that a stretch without gaps is long enough."""
+def check_time(table: MeasurementTable, time: Array) -> tuple[slice, str]:
+    """Check that time advances; return the longest rows without a pause, and what is left out."""
     if len(time) < FEWEST_ROWS:
         table.fail(
             f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed",
@@ -68,14 +45,29 @@ def check_time(table: MeasurementTable, time: Array) -> None:
             "record longer",
         )
     check_advance(table, time)
-    if not long_stretches(time):
-        row, steps = find_stretches(time)[0].stop, np.diff(time)
+    rows = longest_stretch(time)
+    if rows.stop - rows.start < FEWEST_ROWS:
+        steps = np.diff(time)
+        row = int(np.argmax(find_gaps(time))) + 1
         table.fail(
             f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s, and no "
             f"{FEWEST_ROWS} rows without one",
             row,
             "record without interruption",
         )
+    if not (pauses := int(find_gaps(time).sum())):
+        return rows, ""
+    left = counted(len(time) - (rows.stop - rows.start), "row")
+    used = span(time[rows.start] - time[0], time[rows.stop - 1] - time[0], "s")
+    return rows, (
+        f"{counted(pauses, 'pause')} in the record: its longest stretch is used ({used}), and "
+        f"{left} left out; a stretch that is saved as a file is a record, too"
+    )
+
+
+def longest_stretch(time: Array) -> slice:
+    """Return the longest rows without a gap."""
+    return slice(*max(parted(find_gaps(time)), key=lambda ends: ends[1] - ends[0]))
 
 
 def check_advance(table: MeasurementTable, time: Array) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.identification.numeric import Array, Complex, Flags
+from nrs_design.identification.numeric import Array, Flags
 from nrs_design.reporting.style import (
     ALARM,
     BLUE,
@@ -62,25 +62,6 @@ def draw_fit(
     # Short enough for its height.
     lower.set_ylabel("Data - fitted")
     lower.set_xlabel("Time [s]")
-    legend(figure, upper)
-    return figure
-
-
-@styled
-def draw_response(frequency: Array, measured: Complex, model: tuple[Array, Complex]) -> Figure:
-    """Draw magnitude and phase of data and model over frequencies in rad/s."""
-    figure = new_figure(4.8)
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    for w, values, style, color, label in (
-        (frequency, measured, "o", VERMILLION, "data"),
-        (*model, "-", BLUE, "fitted"),
-    ):
-        decibel = 20 * np.log10(np.abs(values))
-        upper.semilogx(w, decibel, style, color=color, label=label)
-        lower.semilogx(w, np.degrees(np.angle(values)), style, color=color)
-    upper.set_ylabel("Magnitude [dB]")
-    lower.set_ylabel("Phase [deg]")
-    lower.set_xlabel("Frequency [rad/s]")
     legend(figure, upper)
     return figure
 

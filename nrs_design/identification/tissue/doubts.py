@@ -38,7 +38,7 @@ def doubts(
 
     Bounds are the logarithms, lower and upper, between which the parameters were sought.
     """
-    wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
+    wrong = (*_units(trial), *doubt_signs(trial, residuals))
     # A record in wrong units makes the sizes of its parameters meaningless.
     read = wrong or tuple(_sizes(law, rotational=trial.record.rotational))
     return (

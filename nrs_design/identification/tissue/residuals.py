@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from nrs_design.identification.numeric import Array, column_sizes
-from nrs_design.identification.statistics import (
-    WHITE,
-    fisher_tail,
-    ljung_box,
-    student_quantile,
-    uncertainty,
-)
+from nrs_design.identification.statistics import WHITE, fisher_tail, ljung_box
 from nrs_design.identification.tissue.trial import Trial
 
 # Largest residual, and largest structure in it, as parts of the range of the force.
@@ -27,7 +21,7 @@ _SPREADS = 3.0
 _NOT_LINEAR = "follow the deflection: the tissue is not linear in it"
 _OTHERWISE_DAMPED = "follow the velocity: the law has another damping"
 _WANDERING = "are not white but wander with time"
-# Decrease of BIC by another offset that contradicts the given one.
+# Decrease of BIC by a tare that moves.
 _BIC = 10.0
 
 
@@ -35,7 +29,6 @@ def doubt_residuals(trial: Trial, residuals: Array, sensitivities: Array) -> Ite
     """Yield in words what the residuals say against a fit."""
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
-    yield from _given_offsets(trial, residuals, sensitivities)
     yield from _drift(trial, residuals, sensitivities)
     yield from _conditioning(trial, residuals)
 
@@ -65,33 +58,13 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     return follows**0.5, fisher_tail(_BINS - 1, len(residuals) - _BINS, between / within)
 
 
-def doubt_signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
-    """Doubt the sign of the force, unless a law, which pushes back, explains it well.
-
-    A tissue that relaxes while it is held has its least force at its largest deflection, too; but
-    work was done on it.
-    """
-    if explained(trial, residuals) >= LEAST_R2 or _takes_work(trial):
-        return
-    ((_, stiffest),) = _ends(trial, [trial.deflection], offsets)
-    # Where a tissue relaxes strongly, its force follows the velocity alone.
-    velocity = trial.motion.velocity[trial.used]
-    (softest, _), (_, damping) = _ends(trial, [trial.deflection, velocity], offsets)
-    if stiffest < 0 or (damping < 0 and softest <= 0):
+def doubt_signs(trial: Trial, residuals: Array) -> Iterator[str]:
+    """Doubt the sign of the force, unless a law, which pushes back, explains it well."""
+    if explained(trial, residuals) < LEAST_R2 and not _takes_work(trial):
         yield (
-            "force and deflection have opposite signs (--set negate=true if the sensor measures "
-            "the force on the probe)"
+            "the tissue gives back more work than it takes: force and deflection have opposite "
+            "signs (--set negate=true if the sensor measures the force on the probe)"
         )
-
-
-def _ends(trial: Trial, columns: Sequence[Array], offsets: Array) -> Iterator[tuple[float, float]]:
-    """Yield the 95 % interval of the factor of each column that the force is a sum of."""
-    X = np.column_stack([*columns, offsets])
-    solution = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
-    known = uncertainty(X, trial.measured - X @ solution)
-    for factor, error in zip(solution[: len(columns)], known.errors, strict=False):
-        half = student_quantile(known.degrees) * float(error)
-        yield float(factor) - half, float(factor) + half
 
 
 def _takes_work(trial: Trial) -> bool:
@@ -128,19 +101,6 @@ def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
             p_text = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
             part = f"{100 * size / span:.2g} % of the range of the force, {test} {p_text}"
             yield f"the residuals {what} ({part})"
-
-
-def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
-    settings = trial.preparation
-    if settings.zero is None and settings.tare is None:
-        return
-    columns = np.column_stack([np.ones(len(residuals)), trial.touching[trial.used]])
-    gain = _gain(residuals, sensitivities, columns)
-    if gain > _BIC:
-        yield (
-            f"a fit with a free offset is better (BIC {gain:.3g} less): the given zero or tare "
-            "disagrees with the record"
-        )
 
 
 def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:

@@ -129,7 +129,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     if found.unit != spec.actuator.command:
         writer.put("command", found.unit)
     covered = spec.combines(MOTOR_RANGE)
-    ranges = found.ranges if covered else (found.fit.gain, found.fit.time_constant)
+    ranges = found.fit.ranges if covered else (found.fit.gain, found.fit.time_constant)
     by_name = dict(zip(("gain", "time_constant"), ranges, strict=True))
     units = f"rad/s/{found.unit}", "s"
     narrow: Sequence[str] = ()
@@ -144,7 +144,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         writer.put(name, value if covered else value["nominal"])
     intervals = {name: value["range"] for name, value in written.items()}
     writer.put("intervals", None if covered else intervals)
-    writer.put("range_covers", found.coverage if covered else None)
+    writer.put("range_covers", "confidence" if covered else None)
     late = found.clear_dead_time if spec.takes_dead_time else None
     writer.put("dead_time", late and _outwards(late, "s")["range"])
     writer.put_origin((*(found.doubts if late else found.caveats), *narrow))

@@ -17,11 +17,10 @@ from nrs_design.identification.actuator.fit import (
 )
 from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.statistics import WHITE, Estimate, check_spread, span, spread_ranges
+from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tables.table import Source
-from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
-from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
+from nrs_design.spec.provenance import MOTOR_COVERS
 
 UNDETERMINED = (
     "the records do not determine the dead time: it may be a tenth of a record, or longer (record "
@@ -41,8 +40,6 @@ class ActuatorIdentification:
     records: tuple[SignalRecord, ...]  # The data
     fit: ActuatorFit  # The motor
     doubts: tuple[str, ...]  # Evidence against the fit
-    ranges: tuple[Estimate, ...]  # Ranges of gain and time constant for a spec
-    coverage: Coverage = "confidence"  # Coverage of the ranges
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -62,7 +59,7 @@ class ActuatorIdentification:
     @property
     def covers(self) -> str:
         """Coverage of the ranges, in words."""
-        return MOTOR_COVERS[self.coverage]
+        return MOTOR_COVERS["confidence"]
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -91,33 +88,21 @@ class ActuatorIdentification:
         )
 
 
-def identify_actuator(
-    records: Sequence[SignalRecord],
-    coverage: Coverage = "confidence",
-    progress: Progress = silent,
-) -> ActuatorIdentification:
+def identify_actuator(records: Sequence[SignalRecord]) -> ActuatorIdentification:
     """Fit gain, time constant, friction and dead time to records.
 
-    The ranges for a spec hold the recorded motor, or (coverage by tolerance or prediction) others
-    too, which takes more than one record; else `DataError`.
+    The ranges for a spec hold the recorded motor, and no other.
     """
-    _check(records, coverage)
-    progress("fitting")
+    _check(records)
     fit = _fit(records)
     step = min(record.step for record in records)
     doubts = (*doubt_step(step), *_slips(fit, records[0].unit), *find_doubts(records, fit))
-    ranges: Sequence[Estimate] = fit.ranges
-    if coverage != "confidence":
-        progress("each record by itself")
-        ranges = _other_ranges(records, coverage)
-    return ActuatorIdentification(tuple(records), fit, doubts, tuple(ranges), coverage)
+    return ActuatorIdentification(tuple(records), fit, doubts)
 
 
-def _check(records: Sequence[SignalRecord], coverage: Coverage) -> None:
+def _check(records: Sequence[SignalRecord]) -> None:
     if not records:
         raise DataError("there are no records", remedy="name at least one CSV file")
-    if coverage != "confidence":
-        check_spread(coverage, len(records))
     if len({record.source.sha256 for record in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
@@ -128,25 +113,6 @@ def _check(records: Sequence[SignalRecord], coverage: Coverage) -> None:
             f"the commands are in {' and '.join(sorted(units))}",
             remedy="give records of one driver",
         )
-
-
-def _other_ranges(records: Sequence[SignalRecord], coverage: Coverage) -> tuple[Estimate, ...]:
-    """Return ranges for other records, from one fit to each."""
-    fits = [_fit_alone(record) for record in records]
-    single = [(fit.gain, fit.time_constant) for fit in fits]
-    logarithms = np.log([[estimate.value for estimate in row] for row in single])
-    return spread_ranges(coverage, logarithms, single)
-
-
-def _fit_alone(record: SignalRecord) -> ActuatorFit:
-    try:
-        return _fit([record])
-    except DataError as error:
-        raise DataError(
-            f"{record.name} alone does not determine the motor: {error.message}",
-            path=record.source.path,
-            remedy="give records that each do, such as steps or chirps; or leave --covers out",
-        ) from None
 
 
 def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:

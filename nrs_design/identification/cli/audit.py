@@ -113,5 +113,3 @@ def _print(judgement: RunJudgement, name: str, reason: str) -> None:
     for basis in dict.fromkeys(c.basis for c in judgement.checks if c.basis):
         of = ", ".join(c.name for c in judgement.checks if c.basis == basis)
         detail(f"bound of {of}: {basis}")
-    if judgement.hint:
-        say(judgement.hint)

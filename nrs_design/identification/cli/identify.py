@@ -182,10 +182,6 @@ def tissue(
 def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
-    covers: Annotated[
-        Covers,
-        typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
-    ] = "confidence",
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -205,8 +201,8 @@ def actuator(
 
     outputs = Destinations.checked(write, report, date)
     records = read_all(data, read_actuator, columns or [])
-    with progress("fitting") as step:
-        result = identify_actuator(records, covers, step)
+    with progress("fitting"):
+        result = identify_actuator(records)
     view = view_actuator(result)
     return _deliver(outputs, view, lambda spec: merge_actuator(spec, result))
 
@@ -215,13 +211,8 @@ def actuator(
 @command("identify-delay")
 def delay(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
-    command: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="What was sent; default: command_UNIT.")
-    ] = None,
-    measured: Annotated[
-        str | None,
-        typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
-    ] = None,
+    command: Annotated[str, typer.Option(metavar="COLUMN", help="What was sent.")],
+    measured: Annotated[str, typer.Option(metavar="COLUMN", help="What follows.")],
     columns: ColumnMap = None,
     write: WriteTo = None,
     report: ReportTo = None,
@@ -242,19 +233,10 @@ def delay(
     from nrs_design.identification.reporting.delay import view_delay
     from nrs_design.identification.write_spec import merge_sampling
 
-    if (command is None) != (measured is None):
-        raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
-    if command is not None and command == measured:
+    if command == measured:
         raise typer.BadParameter("name two columns", param_hint="--command, --measured")
-    if write is not None and command is None:
-        raise typer.BadParameter(
-            "name the force as measured by --command, and as the law used it by --measured",
-            param_hint="--write",
-        )
     outputs = Destinations.checked(write, report, date)
-    entries = list(columns or [])
-    if command is not None:
-        entries += [f"input_any={command}", f"output_any={measured}"]
+    entries = [*(columns or []), f"input_any={command}", f"output_any={measured}"]
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         result = identify_delay(record)

@@ -21,10 +21,6 @@ LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")
 ANGLE = ("time", "command", "angle")
 VELOCITY = ("time", "command", "velocity")
-FREE = (("input", "output"),)
-FOLLOWED = tuple(
-    ("command", output) for output in ("angle", "velocity", "torque", "force", "deflection")
-)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,20 +100,11 @@ def read_actuator(data: Data, mapping: Mapping[str, str] | None = None) -> Signa
     return SignalRecord(table.source, time, command, output, is_angle, unit, pauses)
 
 
-def read_signals(data: Data, mapping: Mapping[str, str] | None = None) -> SignalRecord:
-    """Read two columns: a command, and what follows it.
-
-    They are ``time_s, command_rpm`` and ``angle_rad`` or another measured one; any two others are
-    mapped to ``input_any`` and ``output_any``.
-    """
-    mapping = mapping or {}
-    chosen = {"input_any", "output_any"} & set(mapping.values())
-    layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
-    table, pauses = _uninterrupted(read_table(data, layouts, mapping))
+def read_signals(data: Data, mapping: Mapping[str, str]) -> SignalRecord:
+    """Read two columns that are mapped to ``input_any`` and ``output_any``."""
+    table, pauses = _uninterrupted(read_table(data, (("time", "input", "output"),), mapping))
     time, command, output = table.values.values()
-    names = table.columns[table.layout[1]].name, table.columns[table.layout[2]].name
-    if table.layout[2] == "angle":
-        check_turns(table, output)
+    names = table.columns["input"].name, table.columns["output"].name
     for name, values in zip(names, (command, output), strict=True):
         check_varies(table, name, values)
     return SignalRecord(table.source, time, command, output, pauses=pauses, names=names)

@@ -12,7 +12,6 @@ from nrs_design.identification.reporting.view import (
     Facts,
     FindingView,
     estimate_numbers,
-    figure_names,
     label_of,
 )
 from nrs_design.identification.statistics import Estimate
@@ -47,7 +46,7 @@ def view_actuator(result: ActuatorIdentification) -> FindingView:
 
 def _rows(result: ActuatorIdentification) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
     """Return name, estimate or reason for none, unit, and range for a spec."""
-    fit, (gain, time_constant) = result.fit, result.ranges
+    fit, (gain, time_constant) = result.fit, result.fit.ranges
     return [
         ("gain", fit.gain, f"(rad/s)/{result.unit}", gain),
         ("time constant", fit.time_constant, "s", time_constant),
@@ -76,10 +75,10 @@ def _facts(result: ActuatorIdentification) -> Facts:
         "dead_time_s": estimate_numbers(late) if late else None,
         "whiteness_p": fit.uncertainty.whiteness,
         "range": {
-            gain: estimate_numbers(result.ranges[0]),
-            "time_constant_s": estimate_numbers(result.ranges[1]),
+            gain: estimate_numbers(result.fit.ranges[0]),
+            "time_constant_s": estimate_numbers(result.fit.ranges[1]),
         },
-        "range_covers": result.coverage,
+        "range_covers": "confidence",
         "range_covers_words": result.covers,
     }
 
@@ -92,11 +91,10 @@ def _sections(result: ActuatorIdentification) -> Iterator[Section]:
 
 def _figures(result: ActuatorIdentification) -> Iterator[Illustration]:
     note = label_of(result.sources)
-    records = result.records[:MAX_FIGURES]
-    for record, name in zip(records, figure_names([r.name for r in records]), strict=True):
+    for number, record in enumerate(result.records[:MAX_FIGURES], 1):
         label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"
         yield Illustration(
-            f"output-{name}",
+            f"output-{number}",
             record.name,
             f"{note}Only the initial state is adapted to this record.",
             draw_fit(record.time, record.output, result.fit.motor.simulate(record), label),

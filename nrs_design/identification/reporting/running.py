@@ -75,7 +75,6 @@ def run_facts(
             for c in run.checks
         ],
         "judged_share_of_rows": run.judged,
-        "stiffness_not_tested_because": run.hint or None,
     }
 
 

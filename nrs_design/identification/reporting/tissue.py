@@ -11,7 +11,6 @@ from nrs_design.identification.reporting.view import (
     Facts,
     FindingView,
     estimate_numbers,
-    figure_names,
     label_of,
     marked,
 )
@@ -34,19 +33,6 @@ _OFFSETS = {
     TARE: ("force in air", ("N", "N m")),
     DRIFT: ("drift of the force", ("N/s", "N m/s")),
 }
-
-_MEANING = (
-    "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
-    "hold the spread between records.",
-    "The range over all records also covers the interval of every single record; its table says "
-    "what else it holds.",
-    "Position of contact and force in air are fitted with the law. Samples that are not used are "
-    "drawn pale.",
-    "RMSE and BIC, which is a sum over the records, are those of parameters of its own in each "
-    "record.",
-    "The p-value of the whiteness test is small where residuals are not white noise: the law then "
-    "misses something, and its intervals come from the scatter between parts of the record.",
-)
 
 
 def view_tissue(result: TissueIdentification, arm: float | None = None) -> FindingView:
@@ -71,7 +57,6 @@ def view_tissue(result: TissueIdentification, arm: float | None = None) -> Findi
         title=f"Tissue law from {counted(len(result.records), 'record')}",
         claim=f"{law.formula} with {values}. {result.reason}",
         sections=lambda: _sections(result, arm),
-        meaning=_MEANING,
     )
 
 
@@ -247,12 +232,11 @@ def _parameters(result: TissueIdentification, arm: float | None) -> Iterator[Blo
 
 
 def _figures(result: TissueIdentification) -> Iterator[Illustration]:
-    fits = result.chosen.fits[:MAX_FIGURES]
-    for fit, name in zip(fits, figure_names([fit.record.name for fit in fits]), strict=True):
+    for number_, fit in enumerate(result.chosen.fits[:MAX_FIGURES], 1):
         trial = fit.trial
         label = "Torque [N m]" if result.rotational else "Force [N]"
         yield Illustration(
-            f"fit-{name}",
+            f"fit-{number_}",
             fit.record.name,
             f"{label_of(result.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
             f"whiteness p = {fit.uncertainty.whiteness:.2g}.",

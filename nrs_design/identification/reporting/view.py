@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from nrs_design import __version__
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
+from nrs_design.reporting.document import Report, Section, Table
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator.identify import ActuatorIdentification
@@ -55,7 +54,6 @@ class FindingView:
     title: str  # Title of the page
     claim: str  # First sentences of the page
     sections: Callable[[], Iterable[Section]]  # Draws the rest of the page
-    meaning: tuple[str, ...] = ()  # Explanations of the page
 
     @property
     def document(self) -> Facts:
@@ -73,7 +71,6 @@ class FindingView:
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
         result = self.result
-        read = Section("How to read this", (Bullets("", self.meaning),), boxed=True)
         return Report(
             name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
             title=self.title,
@@ -83,24 +80,10 @@ class FindingView:
                 *(f"Remark: {remark}." for remark in result.remarks),
                 *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
-            lights=_lights(result),
             facts=facts_of(result.sources),
-            sections=(
-                *self.sections(),
-                *([read] if self.meaning else ()),
-                source_section(result.sources),
-            ),
+            sections=(*self.sections(), source_section(result.sources)),
             footer=_FOOTER,
         )
-
-
-def _lights(result: Finding) -> tuple[Light, Light]:
-    data = Light("Data", State.GOOD, "measured", _FILES)
-    if is_synthetic(result.sources):
-        data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", _FILES)
-    if result.caveats:
-        return data, Light("Doubts", State.DOUBTFUL, counted(len(result.caveats), "doubt"))
-    return data, Light("Doubts", State.GOOD, "none")
 
 
 def facts_of(sources: Sequence[Source]) -> tuple[tuple[str, str], ...]:
@@ -144,11 +127,3 @@ def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
 def marked(name: str, *, chosen: bool) -> str:
     """Return the name of a fit in a table of several."""
     return f"{name} (chosen)" if chosen else name
-
-
-def figure_names(names: Sequence[str]) -> list[str]:
-    """Return names of figures for names of records, no two alike."""
-    plain = [re.sub(r"[^A-Za-z0-9-]+", "-", name) for name in names]
-    if len(set(plain)) == len(plain):
-        return plain
-    return [f"{index}-{name}" for index, name in enumerate(plain, 1)]

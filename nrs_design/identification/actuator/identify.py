@@ -27,6 +27,8 @@ UNDETERMINED = (
     "steps, or more samples of fast motions)"
 )
 
+# First guess of a friction that a scan does not see, as a part of the largest command.
+_GUESS = 0.05
 # Largest part of the output that a fit may miss in errors that are not white.
 _MISSED = 0.01
 # Relative standard error beyond which a parameter is undetermined.
@@ -131,14 +133,17 @@ def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
 def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
     """Return a motor with friction only where that is better.
 
-    The scan may find friction where there is none, as its times are coarse.
+    The scan may find friction where there is none, and none where there is some: it is coarse.
     """
     start = scan_motor(records)
     frictionless = replace(start, friction=None)
-    if start.friction is None:
-        return fit_in_time(records, frictionless)
+    friction = start.friction
+    if friction is None:
+        if not tells_friction(records, start.time_constant, start.delay):
+            return fit_in_time(records, frictionless)
+        friction = _GUESS * max(float(np.abs(record.command).max()) for record in records)
     try:
-        found = fit_in_time(records, start)
+        found = fit_in_time(records, replace(start, friction=friction))
     except DataError:
         return fit_in_time(records, frictionless)
     if found.uncertainty.whiteness >= WHITE and found.tells_friction:

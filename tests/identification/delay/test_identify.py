@@ -160,21 +160,6 @@ def test_what_is_smooth_between_samples():
     assert not is_smooth(replace(signals.copy(1), command=noise))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("record", "name", "delay"),
-    [(signals.copy(1), "a copy", signals.DELAY), (signals.lag(1), "a first-order lag", LATE)],
-)
-def test_a_pause_parts_a_record(record, name, delay):
-    kept = np.r_[0:700, 760:1400, 1430:2000]
-    columns = {key: getattr(record, key)[kept] for key in ("time", "command", "output")}
-    found = identify_delay(replace(record, **columns))
-    assert found.chosen.follower.name == name
-    assert found.samples.covers(delay)
-    said = "2 pauses part the record: its stretches are fitted together"
-    assert found.remarks[0].startswith(said)
-
-
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("record", "truth", "most"),

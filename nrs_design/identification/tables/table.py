@@ -7,6 +7,7 @@ import hashlib
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from io import StringIO
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
@@ -25,8 +26,7 @@ Data = Path | Mapping[str, Any]
 
 MAX_ROWS = 10_000_000
 MAX_LABELS = 1000
-# More than this is no line of CSV, whose reader takes cells up to 128 KiB.
-_LONGEST_LINE = 1 << 16
+_LARGEST_FILE = 1 << 29
 _PREAMBLE = 100
 _ARRAYS = Path("arrays")
 # Signs that a comment begins with.
@@ -132,11 +132,10 @@ def _read(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    hashed = hashlib.sha256()
-    while block := file.read(_LONGEST_LINE):
-        hashed.update(block)
-    file.seek(0)
-    lines = _lines(file, path)
+    raw = file.read(_LARGEST_FILE + 1)
+    if len(raw) > _LARGEST_FILE:
+        raise DataError("is larger than 512 MiB", path=path, remedy="record more slowly")
+    lines = _lines(raw, path)
     head = list(islice(lines, _PREAMBLE))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
     header = _read_header(head, path, example)
@@ -151,7 +150,7 @@ def _read(
         )
     values = dict(zip(columns, scaled, strict=True))
     synthetic = any(text[:1] in _COMMENT and "synthetic" in text.lower() for text in head)
-    source = Source(path, hashed.hexdigest(), synthetic)
+    source = Source(path, hashlib.sha256(raw).hexdigest(), synthetic)
     return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header.line + 1)
 
 
@@ -205,20 +204,19 @@ def _decimal(text: str) -> float | None:
         return None
 
 
-def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
-    """Yield the lines of a text, so that it is never in memory at once."""
-    for number, raw in enumerate(iter(lambda: file.readline(_LONGEST_LINE), b""), 1):
-        if b"\0" in raw:
-            raise DataError(
-                "is no text in UTF-8", path=path, line=number, remedy="save its columns as CSV"
-            )
-        if len(raw) == _LONGEST_LINE:
-            raise DataError("has a line of over 64 KiB", path=path, remedy="save it as CSV")
-        try:
-            yield raw.decode("utf-8-sig" if number == 1 else "utf-8").strip("\r\n ")
-        except UnicodeDecodeError:
-            # Measuring software on Windows writes µ and ° in this way.
-            yield raw.decode("cp1252", "replace").strip("\r\n ")
+def _lines(raw: bytes, path: Path) -> Iterator[str]:
+    """Yield the lines of a text."""
+    if b"\0" in raw:
+        line = raw.count(b"\n", 0, raw.index(b"\0")) + 1
+        raise DataError(
+            "is no text in UTF-8", path=path, line=line, remedy="save its columns as CSV"
+        )
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        # Measuring software on Windows writes µ and ° in this way.
+        text = raw.decode("cp1252", "replace")
+    return (line.strip("\r\n ") for line in StringIO(text))
 
 
 def _rows(lines: Iterable[str], header: _Header, path: Path) -> Iterator[tuple[int, list[str]]]:

@@ -1,9 +1,6 @@
 """Records: what makes them unusable."""
 
 import hashlib
-import resource
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -94,32 +91,6 @@ def test_an_angle_that_begins_anew_after_each_turn(tmp_path):
         read_actuator(path)
     assert caught.value.line == 92
     read_actuator(write(tmp_path, "time_s,command_rpm,angle_deg", TIME, command, angle))
-
-
-ROWS = 1_000_000
-SCRIPT = """
-import resource, sys
-from pathlib import Path
-import numpy
-from nrs_design.identification.datasets.records import read_tissue
-peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-before = peak()
-record = read_tissue(Path(sys.argv[1]))
-print(len(record.force), peak() - before)
-"""
-
-
-@pytest.mark.slow
-def test_a_million_rows(tmp_path):
-    time = np.arange(ROWS) / 1000
-    deflection = 0.01 * np.sin(time)
-    path = write(tmp_path, "time_s,deflection_m,force_N", time, deflection, 750 * deflection)
-    command = [sys.executable, "-c", SCRIPT, str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    count, kilobytes = map(int, done.stdout.split())
-    assert count == ROWS
-    # The three columns take 24 MB; the text alone would be 27 MB, as Python objects ten times that.
-    assert kilobytes < 120_000, resource.RUSAGE_SELF
 
 
 LAYOUTS = (("time", "deflection", "force"), ("time", "angle", "torque"))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.datasets.records import TissueRecord
-from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.doubts import structure
+from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.models.contact import LAWS, Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification.support import quick, record, slow, source
 

@@ -262,14 +262,6 @@ def test_the_law_of_the_nose_has_a_place(tmp_path, silicone, nose):
     assert "parallel_stiffness" not in back
 
 
-def test_laws_without_a_place_in_a_spec():
-    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
-    found = identify_tissue(data, "hunt-crossley")
-    with pytest.raises(DataError, match="hunt-crossley has no place") as caught:
-        merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
-    assert "--model kelvin-boltzmann" in caught.value.remedy
-
-
 @pytest.mark.slow
 def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     loaded = read_spec(SOFT_TISSUE)

@@ -184,8 +184,8 @@ def _signs(trial: Trial, residuals: Array) -> Iterator[str]:
     """Doubt the sign of the force, unless a law, which pushes back, explains it well."""
     if _explained(trial, residuals) < LEAST_R2 and not _takes_work(trial):
         yield (
-            "the tissue gives back more work than it takes: force and deflection have opposite "
-            "signs (--set negate=true if the sensor measures the force on the probe)"
+            "force and deflection have opposite signs: the tissue gives back more work than it "
+            "takes (--set negate=true if the sensor measures the force on the probe)"
         )
 
 

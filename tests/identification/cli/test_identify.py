@@ -9,18 +9,7 @@ from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
 from tests.identification import signals
 from tests.identification.support import NOSE, SINUSOIDS, SOFT, quick, record, write_csv
-from tests.identification.unilateral import robot_record
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, document_of, run
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("dates", "count"), [((), 0), (("--date", "2026-03-01"), 1)])
-def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, dates, count):
-    options = ("--report", "p.html", *dates, "-q")
-    run("identify", "tissue", SOFT[0], *options, cwd=tmp_path, code=0)
-    page = (tmp_path / "p.html").read_text()
-    assert page.count("<time") == count
-    assert page.count('<time datetime="2026-03-01">2026-03-01</time>') == count
 
 
 @pytest.mark.parametrize(
@@ -39,12 +28,6 @@ def test_bad_input_is_one_message(tmp_path, arguments, message):
     assert message in result.stderr
     assert result.stderr.count("error[") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_help_has_examples(tmp_path):
-    for command in ("tissue", "actuator", "delay"):
-        assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout
-    assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout
 
 
 @pytest.mark.slow
@@ -140,16 +123,6 @@ def press_csv(folder, data, scales=(1.0, 1.0)):
     """Write a record, whose deflection and force may be in another unit."""
     columns = (data.motion.time, scales[0] * data.motion.deflection, scales[1] * data.force)
     return write_csv(folder / "press.csv", "time_s,deflection_m,force_N", *columns)
-
-
-@pytest.mark.slow
-def test_offsets_and_cuts_are_said(tmp_path):
-    """A robot at 400 N/m behind 0.1 m, with a tare of -1.3 N and air before the contact."""
-    data = robot_record(KelvinVoigt(400.0, 3.0), quick(2), 0.05, 2, zero=0.1, tare=-1.3)
-    path = press_csv(tmp_path, data)
-    command = ("identify", "tissue", path, "--report", "page.html")
-    for text in (run(*command, "-v", cwd=tmp_path).stdout, (tmp_path / "page.html").read_text()):
-        assert "3 touches" in text
 
 
 VOIGT = ("    model: elastic\n", "    model: kelvin-voigt\n    damping: 30 N*s/m\n")

@@ -8,7 +8,6 @@ import pytest
 from nrs_design.errors import DataError, DesignError
 from nrs_design.identification.running.bounds import BoundStatus, bounds_of_spec, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
-from nrs_design.identification.running.log import read_run
 from nrs_design.spec import parse_spec, read_spec
 from tests.identification import runs
 from tests.identification.runs import SAMPLED, SOFT, check, judged, log
@@ -214,11 +213,8 @@ def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
 
 @pytest.mark.parametrize("names", ["iw", "37"])
 def test_modes_have_names(tmp_path, names):
-    t, angle, torque, command, mode = runs.run(duration=6.0)
-    mode = np.where(mode == "insertion", *names)
-    path = tmp_path / "run.csv"
-    path.write_text(runs.text(t, angle, torque, command, mode))
-    log = read_run(path)
-    assert log.labels == tuple(names)
-    assert [log.labels[i] for i in log.modes] == mode.tolist()
-    assert log.command_unit == "rpm"
+    data = *_, mode = runs.run(duration=6.0)
+    mode[:] = np.where(mode == "insertion", *names)
+    found = log(tmp_path, data)
+    assert found.labels == tuple(names)
+    assert [found.labels[i] for i in found.modes] == mode.tolist()

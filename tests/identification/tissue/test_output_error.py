@@ -1,8 +1,5 @@
 """One law, one record: the thesis's parameters come back."""
 
-import math
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -108,16 +105,3 @@ def test_stress_relaxation():
     fit = fit_record(KelvinBoltzmann, measured(motion, LAW.simulate(motion), 0.01, 1))
     assert all(holds(fit.estimates, LAW.values))
     assert fit.doubts == ()
-
-
-def test_creep():
-    force = 2.0 * np.clip((TIME - 2) / 0.5, 0, 1)
-    rate, d, damper = LAW.k1 / LAW.b, 0.0, [0.0]
-    for i in range(1, len(TIME)):
-        h = TIME[i] - TIME[i - 1]
-        slope, a = (force[i] - force[i - 1]) / h, math.exp(-rate * h)
-        d = a * d + (force[i - 1] * (1 - a) / rate + slope * (h / rate - (1 - a) / rate**2)) / LAW.b
-        damper.append(d)
-    motion = Motion(TIME, force / LAW.k2 + np.array(damper))
-    fit = fit_record(KelvinBoltzmann, measured(motion, force, 0.01, 2))
-    assert all(holds(fit.estimates, LAW.values))

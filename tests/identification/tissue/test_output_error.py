@@ -1,5 +1,7 @@
 """One law, one record: the thesis's parameters come back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 

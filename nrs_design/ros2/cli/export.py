@@ -12,7 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.ros2.cli.options import Lag, read_lag
+from nrs_design.ros2.cli.check import Lag, read_lag
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -24,16 +24,6 @@ CLAIMS = {
     "inconclusive": "no bound was left as far as could be judged",
 }
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
-_PROVED = "A run inside its bounds is one run; the proof is about all of them."
-_NO_PROOF = (
-    "A run inside its bounds is one run, and nothing is proved about others: name a certificate by "
-    "--certificate."
-)
-_MEANING = (
-    "Undecided: more than one reading of the log is possible.",
-    "Not judged: the log lacks a column, or a bound is not known. Not modelled: the model takes "
-    "for granted that there is none of it.",
-)
 
 
 def first_violation(run: RunJudgement) -> str:
@@ -88,7 +78,6 @@ def run_report(run: RunJudgement, name: str, reason: str) -> Report:
     """Return the page of a run."""
     sources = [run.log.source]
     claim = first_violation(run) or CLAIMS[run.verdict]
-    limit = _PROVED if run.bounds.proved else _NO_PROOF
     note = "Dashed: the first violation, if there is one."
     figure = Illustration("run", "The log", note, draw_log(run))
     return Report(
@@ -101,7 +90,6 @@ def run_report(run: RunJudgement, name: str, reason: str) -> Report:
         sections=(
             Section("Checks", tuple(_tables(run))),
             Section("Figures", (figure,)),
-            Section("How to read this", (Bullets("", (*_MEANING, limit)),), boxed=True),
             source_section(sources),
         ),
         footer=_FOOTER,

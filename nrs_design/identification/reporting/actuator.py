@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from nrs_design.identification.actuator.fit import DEAD_TIME_NOTE
 from nrs_design.identification.actuator.identify import ActuatorIdentification
-from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     MAX_FIGURES,
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
     label_of,
 )

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.identification.delay.identify import DelayIdentification
-from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
     label_of,
     marked,

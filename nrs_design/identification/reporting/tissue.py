@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
-from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     MAX_FIGURES,
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
     label_of,
     marked,

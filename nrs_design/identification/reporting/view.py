@@ -7,11 +7,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from nrs_design import __version__
+from nrs_design.identification.numeric import Array, Flags
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Report, Section, Table
+from nrs_design.reporting.style import BLUE, INK, VERMILLION, legend, new_figure, styled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from nrs_design.identification.actuator.identify import ActuatorIdentification
     from nrs_design.identification.delay.identify import DelayIdentification
     from nrs_design.identification.statistics import Estimate
@@ -36,6 +42,10 @@ SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 MAX_FIGURES = 6
 _FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
 _FILES = "Data files"
+# Most points of a curve on a page.
+_POINTS = 1500
+_MEASURED = "#7d8894"
+_UNUSED = "#d9b7a0"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,3 +137,35 @@ def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
 def marked(name: str, *, chosen: bool) -> str:
     """Return the name of a fit in a table of several."""
     return f"{name} (chosen)" if chosen else name
+
+
+@styled
+def draw_fit(
+    time: Array, measured: Array, fitted: Array, label: str, used: Flags | None = None
+) -> Figure:
+    """Draw a measured and a fitted output over time in s, and their difference below.
+
+    Samples that were not used for the fit are pale.
+    """
+    pick = thinned(len(time))
+    shown = np.ones(len(time), bool)[pick] if used is None else used[pick]
+    figure = new_figure(4.4)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
+    t, data, curve = time[pick], measured[pick], fitted[pick]
+    upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
+    if not shown.all():
+        upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
+    upper.plot(t, np.where(shown, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.set_ylabel(label)
+    lower.plot(t[shown], (data - curve)[shown], ".", color=VERMILLION, markersize=2.5)
+    lower.axhline(0.0, color=INK, linewidth=0.8)
+    # Short enough for its height.
+    lower.set_ylabel("Data - fitted")
+    lower.set_xlabel("Time [s]")
+    legend(figure, upper)
+    return figure
+
+
+def thinned(count: int) -> slice:
+    """Return which of many points are drawn."""
+    return slice(None, None, max(1, -(-count // _POINTS)))

@@ -34,8 +34,8 @@ class TissueIdentification:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """None about all records: each trial has its own."""
-        return ()
+        """Pauses in the records, in words."""
+        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
     def doubts(self) -> tuple[str, ...]:

@@ -116,8 +116,6 @@ class Trial:
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
                 "would pass for relaxation"
             )
-        if self.record.pauses:
-            texts.append(self.record.pauses)
         if self.drift:
             texts.append("the tare is fitted as moving in proportion to time")
         return (*texts, *self.cuts)

@@ -79,6 +79,5 @@ def test_a_record_whose_begin_a_pause_cut_off_need_not_begin_at_rest():
     assert found.chosen.law.name == law.name
     assert found.caveats == ()
     assert all(holds(found.chosen.ranges, law.values))
-    (fit,) = found.chosen.fits
-    assert any("its longest stretch is used" in text for text in fit.trial.remarks)
-    assert fit.trial.unrested
+    assert found.remarks == ("record-3: 1 pause in the record: its longest stretch is used",)
+    assert found.chosen.fits[0].trial.unrested

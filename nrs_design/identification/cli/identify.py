@@ -83,7 +83,7 @@ def _show(view: FindingView) -> None:
 
     if is_synthetic(view.result.sources):
         say(SYNTHETIC)
-    if wants_details():
+    if view.fits is not None and wants_details():
         # The table of the page, without its caption.
         print_table("", view.fits.columns, view.fits.rows)
     for line in view.lines:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from nrs_design.identification.actuator.fit import DEAD_TIME_NOTE
 from nrs_design.identification.actuator.identify import ActuatorIdentification
@@ -15,7 +15,7 @@ from nrs_design.identification.reporting.view import (
     label_of,
 )
 from nrs_design.identification.statistics import Estimate
-from nrs_design.reporting.document import Bullets, Illustration, Section, Table
+from nrs_design.reporting.document import Bullets, Illustration, Section
 
 
 def view_actuator(result: ActuatorIdentification) -> FindingView:
@@ -27,7 +27,6 @@ def view_actuator(result: ActuatorIdentification) -> FindingView:
         lines.append(f"dead time = {samples} samples of {result.step:.4g} s, {DEAD_TIME_NOTE}")
     lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
     lines.append(f"the range holds {result.covers}")
-    said = (f"{name} {value} {unit}" for name, value, unit, _ in rows)
     return FindingView(
         result,
         kind="actuator",
@@ -37,10 +36,10 @@ def view_actuator(result: ActuatorIdentification) -> FindingView:
         facts=_facts(result),
         lines=lines,
         details=(),
-        fits=_table(result),
+        fits=None,
         title="Velocity model with Coulomb friction and dead time",
-        claim=f"{', '.join(said)}.".capitalize(),
-        sections=lambda: _sections(result),
+        claim=f"Fitted to the output in time: {lines[0]}, {lines[1]}.",
+        sections=lambda: _sections(result, lines),
     )
 
 
@@ -53,14 +52,6 @@ def _rows(result: ActuatorIdentification) -> list[tuple[str, Estimate | str, str
         ("friction", fit.friction or "not determined", result.unit, None),
         ("dead time", fit.dead_time or "not determined", "s", None),
     ]
-
-
-def _table(result: ActuatorIdentification) -> Table:
-    rows = tuple(
-        (name, str(value), str(wide or ""), unit) for name, value, unit, wide in _rows(result)
-    )
-    columns = ("Parameter", "Value [95 % interval]", "Range for a spec", "Unit")
-    return Table("Estimates", columns, rows)
 
 
 def _facts(result: ActuatorIdentification) -> Facts:
@@ -83,9 +74,9 @@ def _facts(result: ActuatorIdentification) -> Facts:
     }
 
 
-def _sections(result: ActuatorIdentification) -> Iterator[Section]:
-    text = f"The range holds {result.covers}. A proof over that range is about these motors."
-    yield Section("Parameters", (_table(result), Bullets("", (text,))))
+def _sections(result: ActuatorIdentification, lines: Sequence[str]) -> Iterator[Section]:
+    text = "A proof over the range is about these motors."
+    yield Section("Parameters", (Bullets("", (*lines, text)),))
     yield Section("Measured against fitted", tuple(_figures(result)))
 
 

@@ -60,7 +60,7 @@ class FindingView:
     facts: Facts  # Facts of this kind of identification
     lines: Sequence[str]  # For a terminal
     details: Sequence[str]  # Further lines with ``-v``
-    fits: Table  # All fits
+    fits: Table | None  # All fits, where there are several
     title: str  # Title of the page
     claim: str  # First sentences of the page
     sections: Callable[[], Iterable[Section]]  # Draws the rest of the page

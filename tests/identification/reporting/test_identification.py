@@ -40,7 +40,7 @@ def test_tissue_page(tissue):
 @pytest.mark.slow
 def test_actuator_page(actuator):
     page = render_html(actuator)
-    held = "The range holds gain and time constant of the recorded motor, both at once with 95 %"
+    held = "the range holds gain and time constant of the recorded motor, both at once with 95 %"
     for text in ("time constant", "Measured against fitted", held):
         assert text in page
 

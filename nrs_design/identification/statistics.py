@@ -9,7 +9,6 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.spec.provenance import Coverage
 
@@ -143,13 +142,6 @@ def independent(residuals: Array) -> float:
     return len(residuals) * (1 - alike) / (1 + alike)
 
 
-def fisher_tail(numerator: int, denominator: int, ratio: float) -> float:
-    """Return the p-value of an F-test."""
-    from scipy.special import fdtrc
-
-    return float(fdtrc(numerator, denominator, ratio))
-
-
 def joint_level(count: int) -> float:
     """Return the level of each of `count` intervals that hold together with 95 %."""
     return 1 - (1 - CONFIDENCE) / count
@@ -238,16 +230,6 @@ def spread_ranges(
     means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
     halves = zip(means.tolist(), (factor * scatter).tolist(), strict=True)
     return hulls([Estimate.from_log(mean, half) for mean, half in halves], single)
-
-
-def check_spread(coverage: Coverage, count: int) -> None:
-    """Refuse one record, which does not tell how specimens differ."""
-    if count < 2:
-        raise DataError(
-            f"a range for {coverage} needs several records, and there is one: it says nothing of "
-            "the spread between specimens",
-            remedy="give more records, or take --covers confidence",
-        )
 
 
 def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> tuple[Estimate, ...]:

@@ -12,7 +12,6 @@ from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import (
     WHITE,
     Uncertainty,
-    fisher_tail,
     ljung_box,
     student_quantile,
 )
@@ -167,6 +166,8 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     Return the root mean square of what they follow, in N (N m), and the p-value of the F-test of
     one-way analysis of variance.
     """
+    from scipy.special import fdtrc
+
     order = np.argsort(values, kind="stable")
     groups = np.array_split(residuals[order], _BINS)
     means = np.array([group.mean() for group in groups])
@@ -177,7 +178,7 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     if within == 0.0:
         return 0.0, 1.0
     follows = max(0.0, (between - within) * (_BINS - 1) / len(residuals))
-    return follows**0.5, fisher_tail(_BINS - 1, len(residuals) - _BINS, between / within)
+    return follows**0.5, float(fdtrc(_BINS - 1, len(residuals) - _BINS, between / within))
 
 
 def _signs(trial: Trial, residuals: Array) -> Iterator[str]:

@@ -200,15 +200,13 @@ class DelayIdentification:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Doubts, and dynamics that make the delay more than the age of a sample."""
+        """Doubts, what pauses leave out, and dynamics beside which a delay is more than an age."""
+        said = (*self.doubts, self.record.pauses) if self.record.pauses else self.doubts
         if not isinstance(self.chosen.follower, Lagged):
-            return self.doubts
+            return said
         command, output = self.record.names
         name = self.chosen.follower.name
-        return (
-            *self.doubts,
-            f"{name} fits better between {command} and {output} than a mere delay",
-        )
+        return (*said, f"{name} fits better between {command} and {output} than a mere delay")
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:

@@ -160,6 +160,12 @@ def test_what_is_smooth_between_samples():
     assert not is_smooth(replace(signals.copy(1), command=noise))
 
 
+def test_what_a_pause_leaves_out_is_noted_in_a_spec():
+    """Delays of the other parts of the record are not in the range."""
+    found = identify_delay(replace(signals.held(1, 2.0), pauses="1 pause"))
+    assert (found.remarks[0], found.caveats[0]) == ("1 pause", "1 pause")
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("record", "truth", "most"),

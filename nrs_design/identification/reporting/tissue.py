@@ -113,7 +113,7 @@ def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
 def _offset_texts(fit: RecordFit, rotational: bool) -> Iterator[str]:
     for name, value in fit.offsets.items():
         words, units = _OFFSETS[name]
-        rest = " if the force in air is zero" * (name == ZERO and not fit.trial.contact)
+        rest = " if the force in air is zero" * (name == ZERO and TARE not in fit.offsets)
         yield f"{words} {value:.5g} {units[rotational]}{rest}"
 
 

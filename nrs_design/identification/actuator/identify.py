@@ -168,11 +168,6 @@ def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator
             "the command has one level only: friction cannot be told from a smaller gain, and the "
             "gain is that of this level"
         )
-    if motor.friction is not None and any(record.pauses for record in records):
-        yield (
-            "a pause cuts a record, which may begin in motion then, and friction is counted from "
-            "rest: record without a pause, or save the parts that begin at rest as files"
-        )
     names = ["gain", "time constant"] + ["friction"] * (motor.friction is not None)
     for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
         if error > _UNSURE:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from nrs_design.axis import COMMAND_UNITS
 from nrs_design.identification.datasets.checks import (
     check_saturation,
@@ -19,6 +21,8 @@ from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")
+# Samples that tell the velocity at the begin.
+_BEGIN = 10
 ANGLE = ("time", "command", "angle")
 VELOCITY = ("time", "command", "velocity")
 
@@ -63,6 +67,13 @@ class SignalRecord:
     def step(self) -> float:
         """Usual time between samples in s."""
         return usual_step(self.time)
+
+    @cached_property
+    def first_velocity(self) -> float:
+        """Velocity of a motor at the begin, about, in rad/s."""
+        if not self.is_angle:
+            return float(self.output[0])
+        return float(np.polyfit(self.time[:_BEGIN], self.output[:_BEGIN], 2)[1])
 
 
 def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueRecord:

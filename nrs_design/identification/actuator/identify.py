@@ -15,8 +15,7 @@ from nrs_design.identification.actuator.fit import (
     scan_motor,
     tells_friction,
 )
-from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.datasets.records import SignalRecord, doubt_step
 from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.spec.plausible import doubt_size

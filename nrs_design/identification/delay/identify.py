@@ -12,8 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import FEWEST_ROWS, doubt_step
-from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, doubt_step
 from nrs_design.identification.delay.fit import (
     EXACT,
     AbstractFollower,

@@ -7,8 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import FEWEST_ROWS, longest_stretch
-from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, longest_stretch
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.rounding import noise_variance
 from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.identification.datasets.checks import doubt_step
+from nrs_design.identification.datasets.records import doubt_step
 from nrs_design.identification.numeric import Array, column_sizes
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import (

@@ -24,6 +24,7 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import counted
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.features import MOTOR_RANGE
@@ -51,11 +52,13 @@ def merge_tissue(
     found: TissueIdentification,
     environment: str | None,
     arm: str | None,
+    warn: Progress = silent,
 ) -> str:
     """Return the text of a spec with the chosen law in one of its environments.
 
     Its range is written, which covers the pooled interval and that of every record. Linear records
-    need a lever arm such as ``0.24 m``, by default the one of the spec.
+    need a lever arm such as ``0.24 m``, by default the one of the spec. Of a range that gets
+    narrower by few records, or by much, is warned.
     """
     model, tangent, rotational = found.chosen, found.tangent, found.rotational
     law, ranges = (model.law, model.ranges) if tangent is None else (tangent.law, tangent.ranges)
@@ -79,7 +82,7 @@ def merge_tissue(
             remedy="choose a simpler law with --model, or record again as the message says",
         )
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["environments"][name], found.sources)
+    writer = _Writer(document, document.root["environments"][name], found.sources, warn)
     narrow = writer.narrowed(target.ranges, dict(zip(law.keys, ranges, strict=True)))
     power = tangent is not None and has_place(tangent)
     if tangent is not None and power:
@@ -116,7 +119,9 @@ def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
     }
 
 
-def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
+def merge_actuator(
+    loaded: LoadedSpec, found: ActuatorIdentification, warn: Progress = silent
+) -> str:
     """Return the text of a spec with the identified actuator and its intervals.
 
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
@@ -125,7 +130,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     spec = check_actuator(loaded, found.unit)
     assert spec.actuator is not None, "as has been checked"
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["actuator"], found.sources)
+    writer = _Writer(document, document.root["actuator"], found.sources, warn)
     if found.unit != spec.actuator.command:
         writer.put("command", found.unit)
     covered = spec.combines(MOTOR_RANGE)
@@ -194,6 +199,7 @@ class _Writer:
     document: SpecDocument  # The spec
     node: Any  # The part
     sources: Sequence[Source]  # The records
+    warn: Progress = silent  # Takes what speaks against a range beside the doubts of the fit
 
     def put(self, key: str, value: object) -> None:
         """Set a key, or remove it for None; comments within a range stay."""
@@ -247,6 +253,7 @@ class _Writer:
             ):
                 times = f"{before / after:.3g} times {NARROWER}"
                 texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
+                self.warn(texts[-1])
         return texts
 
     def identified(self) -> InteractionDesignSpec:

@@ -15,7 +15,7 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import detail, progress, say, wants_details
+from nrs_design.cli.printing import detail, insist, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.models.contact import LAWS
 
@@ -76,6 +76,10 @@ def _deliver(
     code = exit_codes.INCONCLUSIVE if result.doubts else exit_codes.PROVED
     answer = Answer(lambda: view.document, partial(_show, view), code)
     return outputs.deliver(answer, view.page, merge, result.doubts, result.caveats)
+
+
+def _warn(text: str) -> None:
+    insist(f"warning: {text}")
 
 
 def _show(view: FindingView) -> None:
@@ -173,7 +177,7 @@ def tissue(
     return _deliver(
         outputs,
         view_tissue(result, arm),
-        lambda spec: merge_tissue(spec, result, environment, lever_arm),
+        lambda spec: merge_tissue(spec, result, environment, lever_arm, _warn),
     )
 
 
@@ -204,7 +208,7 @@ def actuator(
     with progress("fitting"):
         result = identify_actuator(records)
     view = view_actuator(result)
-    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result))
+    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result, _warn))
 
 
 @identify.command("delay")

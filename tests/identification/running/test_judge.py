@@ -165,8 +165,13 @@ def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
     found = check(judged(log(tmp_path, following([1.3])), asked), "delay")
     assert (found.status, found.first) == ("not judged", None)
     assert "cannot be told apart" in found.measured
-    several = check(judged(log(tmp_path, following([1.3, 3.7, 7.1])), asked), "delay")
-    assert several.status == "inside"
+    told = following([1.3, 3.7, 7.1])
+    assert check(judged(log(tmp_path, told), asked), "delay").status == "inside"
+    # Beside a gap, the rows of the longest stretch say nothing of the others.
+    gap = np.r_[0:900, 950:5000]
+    parted = log(tmp_path, [column[gap] for column in told])
+    assert check(judged(parted, asked), "delay").status == "undecided"
+    assert check(judged(parted, replace(SOFT, delay=1e-4)), "delay").status == "outside"
 
 
 def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):

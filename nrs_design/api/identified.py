@@ -120,8 +120,8 @@ def identify(
     law : str, optional
         Of the tissue; by default the one that the records speak for.
     columns : mapping of str to str, optional
-        Foreign names of columns, as in ``{"force_N": "Fz"}``; of a delay, also which columns are
-        its ``command`` and what was ``measured``.
+        Foreign names of columns, as in ``{"force_N": "Fz"}``; of a delay, which columns are its
+        ``command`` and what was ``measured``.
 
     Raises
     ------

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 

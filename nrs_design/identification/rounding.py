@@ -16,8 +16,6 @@ _SHARE = 0.1
 _FEWEST_BLIPS, _BLIPS = 2, 0.05
 # Steps that are tried: a reading may be rounded twice, by its sensor and by the digits of its file.
 _CANDIDATES = 50
-# A probe rests if its reading stays this many times longer than usual.
-_REST_LENGTH = 3.0
 
 
 def resolution(readings: Array) -> float:
@@ -67,25 +65,15 @@ def rounding_of_velocity(time: Array, readings: Array) -> float:
     return noise / float(np.mean(np.gradient(readings, time) ** 2))
 
 
-def rounding_scatter(
-    readings: Array, sensitivities: Array, slope: float, *, returns: bool = False
-) -> Array:
+def rounding_scatter(readings: Array, sensitivities: Array, slope: float) -> Array:
     """Return the covariance of ``J'e``, shape (p, p), when e is the error that rounding causes.
 
     As long as the reading does not change, neither does its error: every stretch of equal
     readings has one error with the variance ``q^2/12``, whatever the number of its samples. The
-    slope is output over position. With `returns`, a probe that comes back to a reading comes back
-    to the same error, as it does at its rest: more of them do not tell that place better.
+    slope is output over position.
     """
     starts = np.concatenate([[0], np.flatnonzero(np.diff(readings)) + 1])
     sums = np.add.reduceat(sensitivities, starts, axis=0)
-    if returns:
-        lengths = np.diff([*starts, len(readings)])
-        rests = lengths > _REST_LENGTH * np.median(lengths)
-        _, places = np.unique(readings[starts[rests]], return_inverse=True)
-        place_sums = np.zeros((places.max(initial=-1) + 1, sensitivities.shape[1]))
-        np.add.at(place_sums, places, sums[rests])
-        sums = np.concatenate([sums[~rests], place_sums])
     scatter: Array = (sums.T @ sums) * (slope * resolution(readings)) ** 2 / 12
     return scatter
 

@@ -9,7 +9,6 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.spec.provenance import Coverage
 
@@ -143,13 +142,6 @@ def independent(residuals: Array) -> float:
     return len(residuals) * (1 - alike) / (1 + alike)
 
 
-def fisher_tail(numerator: int, denominator: int, ratio: float) -> float:
-    """Return the p-value of an F-test."""
-    from scipy.special import fdtrc
-
-    return float(fdtrc(numerator, denominator, ratio))
-
-
 def joint_level(count: int) -> float:
     """Return the level of each of `count` intervals that hold together with 95 %."""
     return 1 - (1 - CONFIDENCE) / count
@@ -160,22 +152,6 @@ def student_quantile(degrees: int, confidence: float = CONFIDENCE) -> float:
     from scipy.special import stdtrit
 
     return float(stdtrit(degrees, 0.5 + confidence / 2))
-
-
-def quotients(
-    found: tuple[float, float], covariance: Array, quantile: float
-) -> tuple[float, float]:
-    """Return the ends of the interval of dividend over divisor, found in this order: divisor first.
-
-    All quotients that the estimates do not reject, which is exact where both are normal (Fieller
-    1954). Where the divisor may be 0, all quotients are taken, which errs to the wide side.
-    """
-    # (y - r x)^2 <= t^2 (Vyy - 2 r Vxy + r^2 Vxx) is quadratic in the quotient r.
-    (xx, xy), (_, yy) = np.outer(found, found) - quantile**2 * covariance
-    if not xx > 0:
-        return -math.inf, math.inf
-    root = math.sqrt(max(xy**2 - xx * yy, 0.0))
-    return float((xy - root) / xx), float((xy + root) / xx)
 
 
 def tolerance_factor(count: int, share: float, confidence: float) -> float:
@@ -254,16 +230,6 @@ def spread_ranges(
     means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
     halves = zip(means.tolist(), (factor * scatter).tolist(), strict=True)
     return hulls([Estimate.from_log(mean, half) for mean, half in halves], single)
-
-
-def check_spread(coverage: Coverage, count: int) -> None:
-    """Refuse one record, which does not tell how specimens differ."""
-    if count < 2:
-        raise DataError(
-            f"a range for {coverage} needs several records, and there is one: it says nothing of "
-            "the spread between specimens",
-            remedy="give more records, or take --covers confidence",
-        )
 
 
 def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> tuple[Estimate, ...]:

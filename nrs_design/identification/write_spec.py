@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from math import isfinite
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from nrs_design.axis import AxisType
 from nrs_design.errors import DataError, SpecError
@@ -24,15 +24,15 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import counted
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.features import MOTOR_RANGE
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
-from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
-from nrs_design.spec.sampling import LONGEST_DELAY, SamplingSpec
+from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.spec_document import SpecDocument
 
 _DIGITS = 6
@@ -46,50 +46,44 @@ _MODEL_OPTIONS = f"--model {' or --model '.join(TISSUE_LAWS)}"
 # Keys that only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
 
-SamplingKey = Literal["delay", "latency"]
-# Meaning of each delay in the spec, and how to record it without dynamics.
-_MERE_DELAYS: Mapping[SamplingKey, tuple[str, str]] = {
-    "delay": (
-        "the age of a sample",
-        "name the force as measured by --command and the force that the law used by --measured; "
-        "dynamics between them belong into the model",
-    ),
-    "latency": (
-        "a latency",
-        "name the command as the law computed it by --command, and as the drive took it by "
-        "--measured; what the drive does with it belongs into its model",
-    ),
-}
-
 
 def merge_tissue(
     loaded: LoadedSpec,
     found: TissueIdentification,
     environment: str | None,
     arm: str | None,
-    *,
-    replace: bool = False,
+    warn: Progress = silent,
 ) -> str:
     """Return the text of a spec with the chosen law in one of its environments.
 
-    A much narrower range than the declared one takes its place only with `replace`.
     Its range is written, which covers the pooled interval and that of every record. Linear records
-    need a lever arm such as ``0.24 m``, by default the one of the spec.
+    need a lever arm such as ``0.24 m``, by default the one of the spec. Of a range that gets
+    narrower by few records, or by much, is warned.
     """
     model, tangent, rotational = found.chosen, found.tangent, found.rotational
     law, ranges = (model.law, model.ranges) if tangent is None else (tangent.law, tangent.ranges)
-    name = _place(loaded, environment, arm, rotational=rotational)
+    name = _place(loaded, environment)
+    target = check_interaction(loaded).environments[name]
     if not isinstance(law, AbstractLinearLaw):
-        raise _no_place(law.name)
+        raise DataError(
+            f"the law {law.name} has no place in a spec without a preload",
+            remedy="say by --preload at which deflections, or choose one that has a place: "
+            f"{_MODEL_OPTIONS}",
+        )
+    if not rotational and arm is None and target.lever_arm is None:
+        raise SpecError(
+            f"the environment {name} has no lever_arm, and the records are linear",
+            path=loaded.path,
+            remedy="give --lever-arm '0.24 m'",
+        )
     if model.doubts and not all(map(_is_limited, ranges)):
         raise DataError(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
         )
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["environments"][name], found.sources)
-    declared = check_interaction(loaded).environments[name].ranges
-    narrow = writer.narrowed(declared, dict(zip(law.keys, ranges, strict=True)), replace=replace)
+    writer = _Writer(document, document.root["environments"][name], found.sources, warn)
+    narrow = writer.narrowed(target.ranges, dict(zip(law.keys, ranges, strict=True)))
     power = tangent is not None and has_place(tangent)
     if tangent is not None and power:
         ranges = tangent.power[:2]
@@ -126,28 +120,27 @@ def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
 
 
 def merge_actuator(
-    loaded: LoadedSpec, found: ActuatorIdentification, *, replace: bool = False
+    loaded: LoadedSpec, found: ActuatorIdentification, warn: Progress = silent
 ) -> str:
     """Return the text of a spec with the identified actuator and its intervals.
 
-    A much narrower range than the declared one takes its place only with `replace`.
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
     beside the nominal values, for the record.
     """
     spec = check_actuator(loaded, found.unit)
     assert spec.actuator is not None, "as has been checked"
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["actuator"], found.sources)
+    writer = _Writer(document, document.root["actuator"], found.sources, warn)
     if found.unit != spec.actuator.command:
         writer.put("command", found.unit)
     covered = spec.combines(MOTOR_RANGE)
-    ranges = found.ranges if covered else (found.fit.gain, found.fit.time_constant)
+    ranges = found.fit.ranges if covered else (found.fit.gain, found.fit.time_constant)
     by_name = dict(zip(("gain", "time_constant"), ranges, strict=True))
     units = f"rad/s/{found.unit}", "s"
     narrow: Sequence[str] = ()
     if covered:
         declared = {name: getattr(spec.actuator, name) for name in by_name}
-        narrow = writer.narrowed(declared, by_name, replace=replace)
+        narrow = writer.narrowed(declared, by_name)
     written = {
         name: _positive_range(e, unit, name)
         for (name, e), unit in zip(by_name.items(), units, strict=True)
@@ -156,7 +149,7 @@ def merge_actuator(
         writer.put(name, value if covered else value["nominal"])
     intervals = {name: value["range"] for name, value in written.items()}
     writer.put("intervals", None if covered else intervals)
-    writer.put("range_covers", found.coverage if covered else None)
+    writer.put("range_covers", "confidence" if covered else None)
     late = found.clear_dead_time if spec.takes_dead_time else None
     writer.put("dead_time", late and _outwards(late, "s")["range"])
     writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
@@ -166,47 +159,37 @@ def merge_actuator(
     return document.text()
 
 
-def merge_sampling(loaded: LoadedSpec, found: DelayIdentification, key: SamplingKey) -> str:
-    """Return the text of a spec of a sampled loop with the age of its force sample, or its latency.
+def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> str:
+    """Return the text of a spec of a sampled loop with the age of its force sample.
 
     A record that shows dynamics and no mere delay is a `DataError`.
     """
-    sampling = check_sampling(loaded, key)
+    spec = check_interaction(loaded)
+    if spec.sampling is None:
+        raise SpecError(
+            "the spec has no sampling, and a delay counts in its periods",
+            path=loaded.path,
+            remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
+        )
     command, output = found.record.names
     if found.is_lag:
-        quantity, remedy = _MERE_DELAYS[key]
         raise DataError(
-            f"{output} follows {command} by {found.chosen.follower.name}: that is more than "
-            f"{quantity}",
-            remedy=remedy,
+            f"{output} follows {command} by {found.chosen.follower.name}: that is more than the "
+            "age of a sample",
+            remedy="name the force as measured by --command and the force that the law used by "
+            "--measured; dynamics between them belong into the model",
         )
-    document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["sampling"], found.sources)
-    writer.put(key, _age(found, sampling) if key == "delay" else _latency(found, sampling))
-    writer.put_origin(found.caveats)
-    return document.text()
-
-
-def _age(found: DelayIdentification, sampling: SamplingSpec) -> int | list[int]:
-    low, high = found.periods(sampling.outer)
+    low, high = found.periods(spec.sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
             remedy="record longer or livelier forces, or sample with a longer period",
         )
-    return low if low == high else [low, high]
-
-
-def _latency(found: DelayIdentification, sampling: SamplingSpec) -> list[str]:
-    (command, output), (low, high) = found.record.names, found.delay_range
-    if high <= 0 or high > LONGEST_DELAY * sampling.period.exact:
-        raise DataError(
-            f"{output} comes up to {float(high):.4g} s after {command}; a spec takes up to "
-            f"{LONGEST_DELAY} periods, and none before",
-            remedy="see that the columns are not swapped, and record more rows in a period",
-        )
-    ends: list[str] = _outwards(Estimate(float(low), float(low), float(high)), "s")["range"]
-    return ends
+    document = SpecDocument(loaded)
+    writer = _Writer(document, document.root["sampling"], found.sources)
+    writer.put("delay", low if low == high else [low, high])
+    writer.put_origin(found.caveats)
+    return document.text()
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +199,7 @@ class _Writer:
     document: SpecDocument  # The spec
     node: Any  # The part
     sources: Sequence[Source]  # The records
+    warn: Progress = silent  # Takes what speaks against a range beside the doubts of the fit
 
     def put(self, key: str, value: object) -> None:
         """Set a key, or remove it for None; comments within a range stay."""
@@ -255,16 +239,9 @@ class _Writer:
         self.put("doubts", texts or None)
 
     def narrowed(
-        self,
-        declared: Mapping[str, RangedQuantity],
-        found: Mapping[str, Estimate],
-        *,
-        replace: bool,
+        self, declared: Mapping[str, RangedQuantity], found: Mapping[str, Estimate]
     ) -> list[str]:
-        """Return texts about relative ranges that get narrower by few records or by much.
-
-        Unless these may replace the declared ones, that is a `DataError`.
-        """
+        """Return doubts about relative ranges that get narrower by few records or by much."""
         records = len({source.sha256 for source in self.sources})
         texts = []
         for key in sorted(found.keys() & declared.keys()):
@@ -276,12 +253,7 @@ class _Writer:
             ):
                 times = f"{before / after:.3g} times {NARROWER}"
                 texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
-        if texts and not replace:
-            raise DataError(
-                "; ".join(texts),
-                remedy=f"give {FEW_RECORDS} records or more that show how much it varies, or take "
-                "it all the same with --replace, which keeps the doubt in the spec",
-            )
+                self.warn(texts[-1])
         return texts
 
     def identified(self) -> InteractionDesignSpec:
@@ -292,35 +264,24 @@ class _Writer:
         return written
 
 
-def law_to_write(
-    loaded: LoadedSpec,
-    environment: str | None,
-    arm: str | None,
-    requested: str | None,
-    *,
-    preloaded: bool,
-    rotational: bool,
-) -> str:
+def law_to_write(loaded: LoadedSpec, environment: str | None, requested: str | None) -> str:
     """Return the law to write into an environment: the declared one, unless the user names another.
 
-    All that can be refused before a fit is refused here.
+    What cannot be fitted is refused.
     """
-    name = _place(loaded, environment, arm, rotational=rotational)
-    declared = check_interaction(loaded).environments[name]
-    law = requested or declared.model
+    name = _place(loaded, environment)
+    law = requested or check_interaction(loaded).environments[name].model
     if law not in LAWS:
         raise SpecError(
             f"the environment {name} is a {law}, which no record of a press tells",
             path=loaded.path,
             remedy=f"name the law that shall replace it: {_MODEL_OPTIONS}",
         )
-    if law not in TISSUE_LAWS and not preloaded:
-        raise _no_place(law, declared.preload_range)
     return law
 
 
 def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
-    """Refuse, before a fit, a spec that a motor with commands in this unit cannot go into."""
+    """Refuse a spec that a motor with commands in this unit cannot go into."""
     spec = check_interaction(loaded)
     if spec.actuator is None or spec.motion_loop is None:
         raise SpecError(
@@ -344,26 +305,8 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
     return spec
 
 
-def check_sampling(loaded: LoadedSpec, key: SamplingKey) -> SamplingSpec:
-    """Refuse, before a fit, a spec that no delay, or no latency, can go into."""
-    spec = check_interaction(loaded)
-    if spec.sampling is None:
-        raise SpecError(
-            "the spec has no sampling, and a delay counts in its periods",
-            path=loaded.path,
-            remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
-        )
-    if key == "latency" and not spec.takes_dead_time:
-        raise SpecError(
-            "commands of this loop take effect at once: with two periods a latency is not modelled",
-            path=loaded.path,
-            remedy="write into a spec with one period",
-        )
-    return spec.sampling
-
-
 def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
-    """Refuse, before a fit, a spec that is no interaction design."""
+    """Refuse a spec that is no interaction design."""
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise SpecError(
             f"a spec of kind {loaded.spec.kind} has no place for identified values",
@@ -384,19 +327,8 @@ def check_turning(spec: object, path: Path) -> None:
         )
 
 
-def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> DataError:
-    text = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
-    return DataError(
-        f"the law {law} has no place in a spec without a preload",
-        remedy=f"say by --preload at which deflections{text}, or choose one that has a place: "
-        f"{_MODEL_OPTIONS}",
-    )
-
-
-def _place(
-    loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
-) -> str:
-    """Return the name of the environment to write to, which a lever arm leads to."""
+def _place(loaded: LoadedSpec, environment: str | None) -> str:
+    """Return the name of the environment to write to."""
     environments = check_interaction(loaded).environments
     names = list(environments)
     name = names[0] if environment is None and len(names) == 1 else environment
@@ -407,12 +339,6 @@ def _place(
             f"no environment {name!r}" if name else fault,
             path=loaded.path,
             remedy=f"name one with --environment; the spec has {names_text}",
-        )
-    if not rotational and arm is None and environments[name].lever_arm is None:
-        raise SpecError(
-            f"the environment {name} has no lever_arm, and the records are linear",
-            path=loaded.path,
-            remedy="give --lever-arm '0.24 m'",
         )
     return name
 

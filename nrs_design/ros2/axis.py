@@ -10,7 +10,7 @@ p``, ``E = exp(-T/lag)``; x is where it was some periods ago, and what it touche
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import isqrt
@@ -59,15 +59,6 @@ class ControllerContext:
         if not axis.selected:
             return Fraction(0), Fraction(0)
         return self.rotational if axis.rotates else self.stiffness
-
-    def up_to(self, stiffness: Fraction) -> ControllerContext:
-        """Return the same with other upper ends of the ranges."""
-        low, angular = self.stiffness, self.rotational
-        return replace(
-            self,
-            stiffness=None if low is None else (low[0], stiffness),
-            rotational=None if angular is None else (angular[0], stiffness),
-        )
 
 
 def square_root_between(value: Fraction) -> Interval:
@@ -167,7 +158,7 @@ def close_axis(law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Swi
         time=Time.DISCRETE,
         states=frame.states,
         modes=modes,
-        assumptions=(),  # `nrs-design ros2` says them itself; it writes no certificate.
+        assumptions=(),  # Said beside the verdict, see `assumptions`.
         contact=free,
         sample_time=around.period,
     )

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field, replace
-from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
 from nrs_design.gating.rules import ROS_AXIS, ROS_OTHERS, ROS_PARAMETERS, Rule
 from nrs_design.progress import Progress
-from nrs_design.proof.bounds import lower, nearly
+from nrs_design.proof.bounds import nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
@@ -21,15 +20,10 @@ from nrs_design.ros2.managers import MANAGER, find_undecided, kind_of, managers_
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
 from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS, Range
 from nrs_design.ros2.traps import find_traps
-from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from nrs_design.search.margin import find_margin
 from nrs_design.spec.document import Position
 
-# For each of the proofs by which a safe range is looked for.
-MARGIN_BUDGET = 2.0
-# Of the ends of a range that was looked for.
-DIGITS = 3
 # The worst first: what a file is called where its axes differ.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
 
@@ -106,40 +100,7 @@ class _Asker:
             claim = f"stable{lost}{shown}"
         else:
             claim = evidence.claim(system)
-        message = f"{where}: {claim}"
-        if status is not Status.PROVED and axis.selected:
-            message += self._margin(law, axis, around, met, found, unit)
-        return status, message
-
-    def _margin(
-        self,
-        law: AdmittanceLaw,
-        axis: Axis,
-        around: ControllerContext,
-        met: Range,
-        known: Certification,
-        unit: str,
-    ) -> str:
-        """Say up to which stiffness there is a proof, and from where on a refutation."""
-        low, high = met
-        if low == high:
-            return ""
-
-        quick = min(MARGIN_BUDGET, self.limits.budget)
-        limits = replace(self.limits, budget=quick, optimize_rate=False)
-        margin = find_margin(
-            lambda scale: close_axis(law, axis, around.up_to(low + scale * (high - low))),
-            lambda system: certify(system, limits=limits),
-            known,
-        )
-        if margin.proved is None:
-            return f"; no proof even for {nearly(low, unit)} alone"
-        safe = low + margin.proved * (high - low)
-        said = f"; proved for {lower(low)} to {_digits(safe, ROUND_FLOOR)} {unit}"
-        if margin.refuted is not None and margin.refuted < 1:
-            worse = low + margin.refuted * (high - low)
-            said += f", refuted for {lower(low)} to {_digits(worse, ROUND_CEILING)} {unit}"
-        return said
+        return status, f"{where}: {claim}"
 
 
 def check_file(path: Path, question: Question, limits: Limits, progress: Progress) -> GateOutcome:
@@ -285,12 +246,6 @@ def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
     return Obligation(
         ROS_PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column
     )
-
-
-def _digits(number: Fraction, rounding: str) -> str:
-    """Write a number with few digits, on the side that stays true."""
-    few = Context(DIGITS, rounding).divide(Decimal(number.numerator), Decimal(number.denominator))
-    return f"{few:f}"
 
 
 def _range(met: Range, unit: str) -> str:

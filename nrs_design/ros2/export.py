@@ -23,7 +23,7 @@ from nrs_design.exporters.build import OUTSIDE
 from nrs_design.pipeline.design import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
-from nrs_design.ros2.axis import ControllerContext, close_axis
+from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
 from nrs_design.ros2.law import AXES, AdmittanceLaw, read_law
 from nrs_design.ros2.parameters import parse_nodes
 from nrs_design.ros2.quantities import Range
@@ -101,6 +101,7 @@ def export_controllers(
                 for axis, met in touched.items()
                 for line in _about(axis, designs[axis], met, certificates[axis])
             ]
+            about += [f"taken for granted: {words}" for words in assumptions(around)]
             spec = next(iter(designs.values())).spec.name
             text = _header(name, spec, sampling, about, len(touched)) + body
         yield RosExport(name, worst, text, certificates)

@@ -10,10 +10,7 @@ from typing import NamedTuple
 
 from nrs_design.gating.obligations import Caution
 from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
-from nrs_design.ros2.parameters import RosNode, texts
 
-# Of the broadcaster, which publishes what it filters.
-CHAIN = "sensor_filter_chain"
 # The default share of the new sample, and all that smooth the force as long.
 SLOW = Fraction(1, 20)
 RETUNING = "enable_parameter_update_without_reactivation"
@@ -37,14 +34,6 @@ def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
 def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _damping(law)
     yield from _filter(law)
-    masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
-    if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
-        yield Trap(
-            "admittance.mass",
-            "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
-            "frame, as stiffness and damping do; before, along those of the base, so axes are "
-            "coupled wherever the two frames are turned, which no verdict here covers",
-        )
     if law.values[RETUNING][0]:
         said = "is on" if RETUNING in law.node.values else "is on by default"
         yield Trap(
@@ -61,27 +50,10 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _unknown(law)
 
 
-def _same_frame(node: RosNode) -> bool:
-    """Tell whether the control frame is the base."""
-    frames = [
-        texts(node.values[name]) if name in node.values else None
-        for name in ("control.frame.id", "kinematics.base")
-    ]
-    names = [listed[0].text for listed in frames if listed]
-    return len(names) == len(frames) and names[0] == names[1]
-
-
 def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     """Yield names that may be slips of the pen, and the others together."""
     known, others = sorted(KNOWN), []
-    unknown = unknown_names(law.node)
-    if chain := [name for name in unknown if name.startswith(f"{CHAIN}.")]:
-        yield Trap(
-            chain[0],
-            "is for force_torque_sensor_broadcaster: this controller passes over it, and filters "
-            f"by {FILTER} alone",
-        )
-    for name in (name for name in unknown if name not in chain):
+    for name in unknown_names(law.node):
         if near := get_close_matches(name, known, n=1, cutoff=0.85):
             yield Trap(name, f"is not known to the controller; did you mean {near[0]}?")
         else:

@@ -153,21 +153,11 @@ def samples() -> Iterator[tuple[str, str]]:
         record = actuator_record(frequency, seed=40 + i)
         label = f"{frequency:g}".replace(".", "p")
         yield f"actuator-{label}hz.csv", _text("time_s,command_rpm,angle_rad", record, (3, 1, 6))
-    yield "actuator-response.csv", _response_text(seed=7)
 
 
 def _tissue_text(data: tuple[Motion, Array], names: str, digits: tuple[int, int]) -> str:
     motion, force = data
     return _text(f"time_s,{names}", (motion.time, motion.deflection, force), (2, *digits))
-
-
-def _response_text(seed: int) -> str:
-    generator = np.random.default_rng(seed)
-    hertz = np.array([0.1, 0.2, 0.5, 1, 2, 3, 4, 5, 7, 10, 15, 20, 30])
-    G = GAIN / (1 + 2j * np.pi * hertz * TIME_CONSTANT)
-    magnitude = 20 * np.log10(np.abs(G)) + 0.086 * generator.standard_normal(len(hertz))
-    phase = np.degrees(np.angle(G)) + 0.5 * generator.standard_normal(len(hertz))
-    return _text("frequency_hz,magnitude_db,phase_deg", (hertz, magnitude, phase), (1, 3, 2))
 
 
 def _text(header: str, columns: Sequence[Array], digits: Sequence[int]) -> str:

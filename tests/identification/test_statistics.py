@@ -11,7 +11,6 @@ from nrs_design.identification.statistics import (
     Estimate,
     independent,
     ljung_box,
-    quotients,
     span,
     spread_ranges,
     student_quantile,
@@ -104,25 +103,6 @@ def test_errors_that_are_alike_count_less():
     assert independent(white) == pytest.approx(20000, rel=0.03)
     assert independent(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(20000 / 9, rel=0.05)
     assert independent(np.zeros(10)) == 10
-
-
-def test_the_ends_of_a_quotient_are_those_that_the_data_just_reject():
-    found, covariance = np.array([3.0, -2.0]), np.array([[0.5, 0.2], [0.2, 0.3]])
-    for end in quotients(tuple(found), covariance, 1.9):
-        contrast = np.array([-end, 1.0])
-        assert (contrast @ found) ** 2 == pytest.approx(1.9**2 * contrast @ covariance @ contrast)
-    # By what may be zero there are none.
-    assert quotients((1.0, 2.0), np.eye(2), 1.96) == (-math.inf, math.inf)
-
-
-@pytest.mark.parametrize(("divisor", "most"), [(0.5, 1.0), (2.0, 0.98), (5.0, 0.96)])
-def test_quotients_hold_the_truth_however_uncertain_the_divisor(divisor, most):
-    rng = np.random.default_rng(6)
-    ends = [
-        quotients((divisor + x, 3.0 + y), np.eye(2), 1.96) for x, y in rng.normal(size=(4000, 2))
-    ]
-    truth = 3.0 / divisor
-    assert 0.94 < np.mean([low <= truth <= high for low, high in ends]) < most
 
 
 def test_hidden_scatter_adds():

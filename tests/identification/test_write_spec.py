@@ -107,7 +107,7 @@ def test_one_of_several_environments(silicone):
 
 @pytest.mark.slow
 def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
-    text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None, replace=True)
+    text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None)
     soft = merged(tmp_path, text).spec.environments["soft"]
     assert soft.model == "kelvin-voigt"
     assert soft.lever_arm is None
@@ -115,7 +115,7 @@ def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
     assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in text
     with pytest.raises(SpecError, match="no lever_arm"):
         merge_tissue(merged(tmp_path, text), silicone, None, None)
-    back = merge_tissue(merged(tmp_path, text), silicone, None, "0.24 m", replace=True)
+    back = merge_tissue(merged(tmp_path, text), silicone, None, "0.24 m")
     soft = merged(tmp_path, back).spec.environments["soft"]
     assert (soft.model, soft.lever_arm.text) == ("elastic", "0.24 m")
     assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in back
@@ -147,7 +147,7 @@ def test_line_ends_stay(tmp_path, silicone):
 @pytest.mark.parametrize("file", [SAMPLED, SOFT_TISSUE])
 def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, file):
     """Both ranges hold together with 95 %, so that each is wider than its own interval."""
-    text = merge_actuator(read_spec(file), motor, replace=True)
+    text = merge_actuator(read_spec(file), motor)
     spec = parse_spec(text)
     assert (spec.actuator.intervals, spec.actuator.range_covers) == (None, "confidence")
     assert spec.actuator.range_id == spec.actuator.values_id()
@@ -168,13 +168,12 @@ def test_a_range_that_was_not_there_is_a_change(tmp_path, motor):
 
 
 def test_a_hand_is_told_by_no_record_of_a_press(tmp_path):
-    options = {"preloaded": False, "rotational": False}
     held = "    model: hand\n    damping: 5 N*s/m\n    mass: 0.1 kg\n"
     hand = merged(tmp_path, SOFT_TISSUE.read_text().replace("    model: elastic\n", held))
     with pytest.raises(
         SpecError, match="soft is a hand, which no record of a press tells"
     ) as caught:
-        law_to_write(hand, None, None, None, **options)
+        law_to_write(hand, None, None)
     assert "--model elastic" in caught.value.remedy
 
 
@@ -199,7 +198,7 @@ def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
 def test_a_dead_time_is_no_age_of_the_force(late):
     """It acts in the motion loop; where the law runs at samples, it has a place of its own."""
     loaded = read_spec(SAMPLED)
-    written = parse_spec(merge_actuator(loaded, late, replace=True))
+    written = parse_spec(merge_actuator(loaded, late))
     assert late.doubts == ()
     assert all("narrower" in doubt for doubt in written.actuator.doubts)
     first, last = (end.exact for end in written.actuator.dead_time[:2])
@@ -221,55 +220,31 @@ def test_delay_in_periods_of_the_processor():
     """1.84 to 3.06 samples of 2 ms are 3.69 to 6.13 periods of 1 ms."""
     found = delayed(signals.DELAY)
     loaded = read_spec(SAMPLED)
-    assert parse_spec(merge_sampling(loaded, found, "delay")).sampling.delay == (1, 4)
+    assert parse_spec(merge_sampling(loaded, found)).sampling.delay == (1, 4)
     faster = parse_spec(loaded.text.replace("period: 2 ms", "period: 1 ms"))
-    written = parse_spec(merge_sampling(replace(loaded, spec=faster), found, "delay")).sampling
+    written = parse_spec(merge_sampling(replace(loaded, spec=faster), found)).sampling
     assert (written.delay, written.doubts) == ((3, 7), ())
     assert [source.file for source in written.provenance] == ["pair.csv"]
 
 
-def test_a_latency_in_seconds():
-    """From 1.84 to 3.06 samples of 2 ms, and what a held command hides, rounded outwards."""
-    found = delayed(signals.DELAY)
-    loaded = read_spec(SAMPLED)
-    written = parse_spec(merge_sampling(loaded, found, "latency")).sampling
-    low, high = (float(end.exact) for end in written.latency[:2])
-    held = [float(end) for end in found.delay_range]
-    assert held[0] - 1e-4 <= low <= held[0] < held[1] <= high <= held[1] + 1e-4
-    assert low / 0.002 < signals.DELAY < high / 0.002
-    assert written.delay == loaded.spec.sampling.delay
-    assert [source.file for source in written.provenance] == ["pair.csv"]
-
-
-def test_no_latency_is_written_beside_two_periods(tmp_path):
-    path = tmp_path / "two.nrs.yaml"
-    two = "sampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n"
-    path.write_text(SOFT_TISSUE.read_text() + two)
-    with pytest.raises(SpecError, match="at once") as caught:
-        merge_sampling(read_spec(path), delayed(signals.DELAY), "latency")
-    assert caught.value.remedy
-
-
 @pytest.mark.parametrize(
-    ("key", "spec", "delay", "error", "message"),
+    ("spec", "delay", "error", "message"),
     [
-        ("delay", SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        ("delay", COMMUTING, signals.DELAY, SpecError, "no place"),
-        ("delay", SAMPLED, 30.0, DataError, "31 periods"),
-        ("latency", SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
-        ("latency", SAMPLED, 30.0, DataError, "10 periods"),
+        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (COMMUTING, signals.DELAY, SpecError, "no place"),
+        (SAMPLED, 30.0, DataError, "31 periods"),
     ],
 )
-def test_what_is_no_age_of_the_force_and_no_latency(key, spec, delay, error, message):
+def test_what_is_no_age_of_the_force(spec, delay, error, message):
     with pytest.raises(error, match=message) as caught:
-        merge_sampling(read_spec(spec), delayed(delay), key)
+        merge_sampling(read_spec(spec), delayed(delay))
     assert caught.value.remedy
 
 
 @pytest.mark.slow
 def test_a_lag_is_no_age_of_the_force():
     with pytest.raises(DataError, match="by a first-order lag") as caught:
-        merge_sampling(read_spec(SAMPLED), identify_delay(signals.lag(1)), "delay")
+        merge_sampling(read_spec(SAMPLED), identify_delay(signals.lag(1)))
     assert caught.value.remedy
 
 
@@ -287,19 +262,11 @@ def test_the_law_of_the_nose_has_a_place(tmp_path, silicone, nose):
     assert "parallel_stiffness" not in back
 
 
-def test_laws_without_a_place_in_a_spec():
-    data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
-    found = identify_tissue(data, "hunt-crossley")
-    with pytest.raises(DataError, match="hunt-crossley has no place") as caught:
-        merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
-    assert "--model kelvin-boltzmann" in caught.value.remedy
-
-
 @pytest.mark.slow
 def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     loaded = read_spec(SOFT_TISSUE)
     doubtful = identify_tissue([record(KelvinVoigt(400.0, 60.0), quick(1), 0.02, 1)], "elastic")
-    text = merge_tissue(loaded, doubtful, None, None, replace=True)
+    text = merge_tissue(loaded, doubtful, None, None)
     soft = parse_spec(text).environments["soft"]
     assert soft.doubts == doubtful.caveats
     assert (soft.range_covers, soft.accept_doubt) == ("confidence", None)

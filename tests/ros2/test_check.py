@@ -20,17 +20,10 @@ def statuses(file, question):
 
 
 @pytest.mark.slow
-def test_too_stiff_says_how_stiff_it_may_be():
-    stiff = (Fraction(200), Fraction(90_000))
-    found, status, _ = statuses(EXAMPLE, Question((0, 0), stiff, None))
+def test_what_is_too_stiff_is_refuted():
+    found, status, _ = statuses(EXAMPLE, Question((0, 0), (SOFT[0], Fraction(90_000)), None))
     assert found.verdict == "refuted"
     assert status.count(Status.REFUTED) == 3
-    message = found.obligations[1].message
-    proved, refuted = message.split("; proved for 200 to ")[1].split(" N/m, refuted for 200 to ")
-    safe = Fraction(proved)
-    assert 5_000 < safe < Fraction(refuted.removesuffix(" N/m")) < 90_000
-    again, _, _ = statuses(EXAMPLE, Question((0, 0), (SOFT[0], safe), None))
-    assert again.verdict == "proved"
 
 
 @pytest.mark.parametrize(

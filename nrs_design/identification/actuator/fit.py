@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
-from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
-from nrs_design.identification.numeric import TINY, Array, Complex, bic, search
+from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.numeric import TINY, Array, bic, search
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (
     Estimate,
@@ -35,7 +35,6 @@ _NEARLY = 4.0
 MANY_RECORDS = 5
 # Index of the friction among the parameters.
 _FRICTION = 2
-_FEWEST_FREQUENCIES = 3
 # A log does not say when within a sample a command began.
 DEAD_TIME_NOTE = (
     "counted from the row that first holds a command; one that began before it, by up to a sample, "
@@ -128,16 +127,14 @@ def _regressors(record: SignalRecord, tau: float, delay: float) -> tuple[Array, 
 class ActuatorFit:
     """``tau v' + v = gain (delta(t - D) - friction sign v)``."""
 
-    method: str  # Method of the fit
     gain: Estimate  # In rad/s for each unit of the command
     time_constant: Estimate  # In s
     # Coulomb friction in units of the command; None where the data cannot tell.
     friction: Estimate | None
-    uncertainty: Uncertainty  # For `MotorModel.parameters`, or the logarithms of the first two
-    dead_time: Estimate | None = None  # D in s; None if assumed zero or not determined
-    motor: MotorModel | None = None  # Motor fitted in time; None for a fit in the frequency domain
-    # Shape (n,). Measured less fitted, of all records in turn.
-    errors: Array = field(default_factory=lambda: np.empty(0))
+    uncertainty: Uncertainty  # For `MotorModel.parameters`
+    dead_time: Estimate | None  # D in s; None if not determined
+    motor: MotorModel  # The same without intervals
+    errors: Array  # Shape (n,). Measured less fitted, of all records in turn.
 
     @property
     def tells_friction(self) -> bool:
@@ -156,13 +153,6 @@ class ActuatorFit:
         known = replace(self.uncertainty, covariance=self.uncertainty.covariance[:2, :2])
         gain, time_constant = known.estimates(logarithms, joint_level(2))
         return gain, time_constant
-
-    def response(self, frequency: Array) -> Complex:
-        """Return velocity over command without friction, in rad/s per unit, at rad/s."""
-        late = 0.0 if self.motor is None else self.motor.delay
-        s = 1j * frequency
-        lag = self.gain.value / (1 + s * self.time_constant.value)
-        return np.asarray(lag * np.exp(-s * late))
 
 
 def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorFit:
@@ -187,13 +177,12 @@ def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorF
     if not settled:
         raise DataError(
             "the fit in the time domain does not settle",
-            remedy="check the records, or give a ready frequency response",
+            remedy="check the records, or give livelier ones",
         )
     motor, left = start.replace_parameters(x), errors(x)
     known = _uncertainty(records, slopes(x), left)
     gain, time_constant, *friction = known.estimates(x)[:-1]
     return ActuatorFit(
-        method="output in the time domain",
         gain=gain,
         time_constant=time_constant,
         friction=friction[0] if friction else None,
@@ -217,44 +206,3 @@ def _uncertainty(records: Sequence[SignalRecord], J: Array, errors: Array) -> Un
     parts = zip(records, np.split(J, ends[1:-1]), strict=True)
     scatter = np.sum([rounding_scatter(r.output, slope, 1.0) for r, slope in parts], axis=0)
     return uncertainty(J, errors, starts, scatter)
-
-
-def fit_response(data: FrequencyResponse) -> ActuatorFit:
-    """Fit gain and time constant to a ready frequency response of three frequencies or more.
-
-    Minimizes the logarithm of data over model, whose real part is the magnitude ratio and whose
-    imaginary part is the phase difference. Friction cannot be told from a ratio.
-    """
-    count = len(np.unique(np.round(np.log(data.frequency), 3)))
-    if count < _FEWEST_FREQUENCIES:
-        raise DataError(
-            f"the data have {count} different frequencies, at least {_FEWEST_FREQUENCIES} are "
-            "needed",
-            remedy="record sinusoids below and above the break frequency",
-        )
-
-    def errors(x: Array) -> Array:
-        gain, tau = np.exp(x)
-        return _stack_real(np.log(data.response * (1 + 1j * data.frequency * tau) / gain))
-
-    def slopes(x: Array) -> Array:
-        pole = 1j * data.frequency * np.exp(x[1])
-        return _stack_real(np.column_stack([np.ones(len(pole), complex), -pole / (1 + pole)]))
-
-    start = np.array([np.log(np.abs(data.response).max()), -np.log(np.median(data.frequency))])
-    x, settled = search(errors, slopes, start, np.ones(2))
-    if not settled:
-        raise DataError(
-            "no first-order velocity model fits this response",
-            path=data.source.path,
-            remedy="check the units of magnitude and phase; the response is velocity over command",
-        )
-    known = uncertainty(slopes(x), errors(x))
-    gain, time_constant = known.estimates(x)
-    return ActuatorFit("ready frequency response", gain, time_constant, None, known)
-
-
-def _stack_real(values: Complex) -> Array:
-    """Write complex equations as real ones, real and imaginary parts in turn."""
-    parts = np.stack([values.real, values.imag], axis=1)
-    return np.asarray(parts.reshape(-1, *values.shape[1:]), float)

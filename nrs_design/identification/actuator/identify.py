@@ -12,23 +12,22 @@ from nrs_design.identification.actuator.fit import (
     DEAD_TIME_NOTE,
     ActuatorFit,
     fit_in_time,
-    fit_response,
     scan_motor,
     tells_friction,
 )
-from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.datasets.records import FrequencyResponse, SignalRecord
-from nrs_design.identification.statistics import WHITE, Estimate, check_spread, span, spread_ranges
+from nrs_design.identification.datasets.records import SignalRecord, doubt_step
+from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tables.table import Source
-from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
-from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
+from nrs_design.spec.provenance import MOTOR_COVERS
 
 UNDETERMINED = (
     "the records do not determine the dead time: it may be a tenth of a record, or longer (record "
     "steps, or more samples of fast motions)"
 )
 
+# First guess of a friction that a scan does not see, as a part of the largest command.
+_GUESS = 0.05
 # Largest part of the output that a fit may miss in errors that are not white.
 _MISSED = 0.01
 # Relative standard error beyond which a parameter is undetermined.
@@ -39,36 +38,29 @@ _UNSURE = 0.5
 class ActuatorIdentification:
     """Motor identified from records, with intervals and doubts."""
 
-    data: tuple[SignalRecord | FrequencyResponse, ...]  # Records, or one ready response
+    records: tuple[SignalRecord, ...]  # The data
     fit: ActuatorFit  # The motor
     doubts: tuple[str, ...]  # Evidence against the fit
-    ranges: tuple[Estimate, ...]  # Ranges of gain and time constant for a spec
-    coverage: Coverage = "confidence"  # Coverage of the ranges
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """The files, each once."""
-        return tuple({item.source.sha256: item.source for item in self.data}.values())
-
-    @property
-    def records(self) -> tuple[SignalRecord, ...]:
-        """The records in time."""
-        return tuple(item for item in self.data if isinstance(item, SignalRecord))
+        """The files."""
+        return tuple(record.source for record in self.records)
 
     @property
     def unit(self) -> str:
         """Unit of the command."""
-        return self.data[0].unit
+        return self.records[0].unit
 
     @property
-    def step(self) -> float | None:
-        """Usual time between samples in s; None for a ready response."""
-        return min((record.step for record in self.records), default=None)
+    def step(self) -> float:
+        """Usual time between samples in s."""
+        return min(record.step for record in self.records)
 
     @property
     def covers(self) -> str:
         """Coverage of the ranges, in words."""
-        return MOTOR_COVERS[self.coverage]
+        return MOTOR_COVERS["confidence"]
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -84,7 +76,7 @@ class ActuatorIdentification:
     @property
     def caveats(self) -> tuple[str, ...]:
         """Doubts, and a dead time, for a spec that has no place for it."""
-        if self.fit.motor is not None and self.fit.dead_time is None:
+        if self.fit.dead_time is None:
             return (*self.doubts, UNDETERMINED)
         if self.clear_dead_time is None:
             return self.doubts
@@ -97,44 +89,22 @@ class ActuatorIdentification:
         )
 
 
-def identify_actuator(
-    data: Sequence[SignalRecord | FrequencyResponse],
-    coverage: Coverage = "confidence",
-    progress: Progress = silent,
-) -> ActuatorIdentification:
-    """Fit gain, time constant, friction and dead time to records, or to one frequency response.
+def identify_actuator(records: Sequence[SignalRecord]) -> ActuatorIdentification:
+    """Fit gain, time constant, friction and dead time to records.
 
-    The ranges for a spec hold the recorded motor, or (coverage by tolerance or prediction) others
-    too, which takes more than one record; else `DataError`.
+    The ranges for a spec hold the recorded motor, and no other.
     """
-    responses = [item for item in data if isinstance(item, FrequencyResponse)]
-    records = [item for item in data if isinstance(item, SignalRecord)]
-    _check(records, responses, coverage)
-    progress("fitting")
-    if responses:
-        fit = fit_response(responses[0])
-        return ActuatorIdentification(tuple(data), fit, tuple(_slips(fit, "rpm")), fit.ranges)
+    _check(records)
     fit = _fit(records)
     step = min(record.step for record in records)
     doubts = (*doubt_step(step), *_slips(fit, records[0].unit), *find_doubts(records, fit))
-    ranges: Sequence[Estimate] = fit.ranges
-    if coverage != "confidence":
-        progress("each record by itself")
-        ranges = _other_ranges(records, coverage)
-    return ActuatorIdentification(tuple(data), fit, doubts, tuple(ranges), coverage)
+    return ActuatorIdentification(tuple(records), fit, doubts)
 
 
-def _check(
-    records: Sequence[SignalRecord], responses: Sequence[FrequencyResponse], coverage: Coverage
-) -> None:
-    if coverage != "confidence":
-        check_spread(coverage, len({r.source.sha256 for r in records}) + len(responses))
-    if bool(records) == bool(responses) or len(responses) > 1:
-        raise DataError(
-            f"{len(records)} records and {len(responses)} frequency responses",
-            remedy="give records of the motor, or one frequency response",
-        )
-    if len({(r.source.sha256, r.part) for r in records}) < len(records):
+def _check(records: Sequence[SignalRecord]) -> None:
+    if not records:
+        raise DataError("there are no records", remedy="name at least one CSV file")
+    if len({record.source.sha256 for record in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
         )
@@ -144,28 +114,6 @@ def _check(
             f"the commands are in {' and '.join(sorted(units))}",
             remedy="give records of one driver",
         )
-
-
-def _other_ranges(records: Sequence[SignalRecord], coverage: Coverage) -> tuple[Estimate, ...]:
-    """Return ranges for other records, from one fit to each file."""
-    wholes: dict[str, list[SignalRecord]] = {}
-    for record in records:
-        wholes.setdefault(record.source.sha256, []).append(record)
-    fits = [_fit_file(parts) for parts in wholes.values()]
-    single = [(fit.gain, fit.time_constant) for fit in fits]
-    logarithms = np.log([[estimate.value for estimate in row] for row in single])
-    return spread_ranges(coverage, logarithms, single)
-
-
-def _fit_file(parts: Sequence[SignalRecord]) -> ActuatorFit:
-    try:
-        return _fit(parts)
-    except DataError as error:
-        raise DataError(
-            f"{parts[0].name} alone does not determine the motor: {error.message}",
-            path=parts[0].source.path,
-            remedy="give records that each do, such as steps or chirps; or leave --covers out",
-        ) from None
 
 
 def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
@@ -184,14 +132,17 @@ def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
 def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
     """Return a motor with friction only where that is better.
 
-    The scan may find friction where there is none, as its times are coarse.
+    The scan may find friction where there is none, and none where there is some: it is coarse.
     """
     start = scan_motor(records)
     frictionless = replace(start, friction=None)
-    if start.friction is None:
-        return fit_in_time(records, frictionless)
+    friction = start.friction
+    if friction is None:
+        if not tells_friction(records, start.time_constant, start.delay):
+            return fit_in_time(records, frictionless)
+        friction = _GUESS * max(float(np.abs(record.command).max()) for record in records)
     try:
-        found = fit_in_time(records, start)
+        found = fit_in_time(records, replace(start, friction=friction))
     except DataError:
         return fit_in_time(records, frictionless)
     if found.uncertainty.whiteness >= WHITE and found.tells_friction:
@@ -205,7 +156,6 @@ def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
 def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator[str]:
     """Yield what speaks against a fit in time, with its evidence."""
     motor, step = found.motor, min(record.step for record in records)
-    assert motor is not None
     if motor.delay < -2 * float(found.uncertainty.errors[-1]):
         yield (
             f"the output comes {-motor.delay:.3g} s before its command "

@@ -15,14 +15,18 @@ from nrs_design.identification.numeric import Array, reject
 # Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
 _DIFFERENCE = 1e-5
 _DELAY_DIFFERENCE = 100.0
+# A record begins in motion at this part of the velocity that the largest command leads to.
+_MOVES = 0.2
 
 
-def friction_shape(held: HeldCommand, gain: float, tau: float, friction: float) -> Array:
+def friction_shape(
+    held: HeldCommand, gain: float, tau: float, friction: float, velocity: float = 0.0
+) -> Array:
     """Return friction over its largest value, the mean over each interval, shape (m - 1,).
 
-    It is 1 or -1 against the motion, from rest on. Where the velocity reaches zero while the
-    command is below the friction (in units of the command), the motor sticks, and the friction is
-    just the command. A reversal within an interval is found exactly.
+    It is 1 or -1 against the motion, from a first velocity on. Where the velocity reaches zero
+    while the command is below the friction (in units of the command), the motor sticks, and the
+    friction is just the command. A reversal within an interval is found exactly.
     """
     decays = np.exp(-held.steps / tau)
     factor = (1 - decays) * gain
@@ -35,7 +39,7 @@ def friction_shape(held: HeldCommand, gain: float, tau: float, friction: float) 
         strict=True,
     )
     shape = []
-    velocity, direction = 0.0, 1.0
+    direction = math.copysign(1.0, velocity)
     # A loop: each reversal depends on the motion before it.
     for step, command, decay, forward, backward in steps:
         if velocity == 0.0:
@@ -96,7 +100,10 @@ class MotorModel:
         held = HeldCommand.of(record.time, record.command, self.delay)
         if self.friction is None:
             return held, None
-        return held, friction_shape(held, self.gain, self.time_constant, self.friction)
+        first, fast = record.first_velocity, self.gain * float(np.abs(record.command).max())
+        # A little of it may be noise.
+        first = first if abs(first) > _MOVES * fast else 0.0
+        return held, friction_shape(held, self.gain, self.time_constant, self.friction, first)
 
     def forced(self, record: SignalRecord, held: HeldCommand, shape: Array | None) -> Array:
         """Return the output from rest at the samples of a record, shape (n,)."""

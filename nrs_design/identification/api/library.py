@@ -89,8 +89,7 @@ def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> Finding
 
 
 def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
-    records = [record for file in files for record in read_actuator(file, mapping)]
-    return view_actuator(identify_actuator(records))
+    return view_actuator(identify_actuator([read_actuator(file, mapping) for file in files]))
 
 
 def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:

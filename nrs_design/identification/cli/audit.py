@@ -85,13 +85,6 @@ def audit(
     )
 
 
-# Assumption behind each check that is not modelled.
-_ASSUMPTIONS = {
-    "delay": "the motion is no later behind its command than the spec says",
-    "jitter": "the steps of time are even",
-}
-
-
 def _print(judgement: RunJudgement, name: str, reason: str) -> None:
     from nrs_design.identification.reporting.running import CLAIMS, first_violation, unproved_text
     from nrs_design.identification.reporting.view import SYNTHETIC
@@ -106,12 +99,6 @@ def _print(judgement: RunJudgement, name: str, reason: str) -> None:
     for c in judgement.checks:
         allowed = f" (allowed: {c.allowed})" if c.allowed else ""
         say(f"{c.name}: {c.status}: {c.measured}{allowed}")
-        if c.status == "not modelled":
-            who = judgement.bounds.source
-            comma = "," if "," in who else ""
-            detail(f"not covered: {who}{comma} takes for granted that {_ASSUMPTIONS[c.name]}")
     for basis in dict.fromkeys(c.basis for c in judgement.checks if c.basis):
         of = ", ".join(c.name for c in judgement.checks if c.basis == basis)
         detail(f"bound of {of}: {basis}")
-    if judgement.hint:
-        say(judgement.hint)

@@ -15,7 +15,7 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import detail, progress, say, wants_details
+from nrs_design.cli.printing import detail, insist, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.models.contact import LAWS
 
@@ -32,14 +32,6 @@ WriteTo = Annotated[
     Path | None,
     typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
 ]
-Replace = Annotated[
-    bool,
-    typer.Option(
-        "--replace",
-        help="Let --write narrow a declared range by few records, or by much; a doubt remains.",
-    ),
-]
-
 
 # Coverage of the range in a spec.
 Covers = Literal["confidence", "tolerance", "prediction"]
@@ -86,12 +78,16 @@ def _deliver(
     return outputs.deliver(answer, view.page, merge, result.doubts, result.caveats)
 
 
+def _warn(text: str) -> None:
+    insist(f"warning: {text}")
+
+
 def _show(view: FindingView) -> None:
     from nrs_design.identification.reporting.view import SYNTHETIC, is_synthetic
 
     if is_synthetic(view.result.sources):
         say(SYNTHETIC)
-    if wants_details():
+    if view.fits is not None and wants_details():
         # The table of the page, without its caption.
         print_table("", view.fits.columns, view.fits.rows)
     for line in view.lines:
@@ -117,8 +113,7 @@ def tissue(
         typer.Option(
             "--set",
             metavar="NAME=VALUE",
-            help="What is used of a record: start, end (s), contact (auto, given), zero, tare "
-            "(fit, or such as '0.1 m', '-1.3 N'), drift (auto, fit, none), negate (true).",
+            help="What is used of a record: start, end (s), contact (auto, given), negate (true).",
         ),
     ] = None,
     covers: Annotated[
@@ -134,7 +129,6 @@ def tissue(
         typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
     ] = None,
     write: WriteTo = None,
-    replace: Replace = False,
     environment: Annotated[
         str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
     ] = None,
@@ -146,7 +140,7 @@ def tissue(
     Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
     the like are converted). One file is one record; the spread between records goes into the
     intervals. Air before, between and after touches is found. The position of contact and the
-    force in air are fitted with the law, unless --set gives them.
+    force in air are fitted with the law.
     --write keeps the law of the environment, unless --model names another.
     What the fit leaves in doubt is written into the spec, and the gate fails on it until
     accept_doubt says why the range is used.
@@ -163,18 +157,11 @@ def tissue(
     records = read_all(data, read_tissue, columns or [])
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
-    preparation = read_preparation(settings or (), rotational=rotational)
+    preparation = read_preparation(settings or ())
     deflections = parse_preload(preload, rotational=rotational)
     law = requested = None if model is ModelOption.AUTO else str(model)
     if outputs.spec is not None:
-        law = law_to_write(
-            outputs.spec,
-            environment,
-            lever_arm,
-            requested,
-            preloaded=deflections is not None,
-            rotational=rotational,
-        )
+        law = law_to_write(outputs.spec, environment, requested)
     elif environment is not None:
         raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
     with progress("fitting") as step:
@@ -190,7 +177,7 @@ def tissue(
     return _deliver(
         outputs,
         view_tissue(result, arm),
-        lambda spec: merge_tissue(spec, result, environment, lever_arm, replace=replace),
+        lambda spec: merge_tissue(spec, result, environment, lever_arm, _warn),
     )
 
 
@@ -199,12 +186,7 @@ def tissue(
 def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
-    covers: Annotated[
-        Covers,
-        typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
-    ] = "confidence",
     write: WriteTo = None,
-    narrower: Replace = False,
     report: ReportTo = None,
     date: Date = None,
 ) -> Answer:
@@ -212,43 +194,30 @@ def actuator(
 
     Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
     that moves the motor: sinusoids, steps, stairs, chirps, random ones, in open or closed loop.
-    One file is one record. Or a frequency response: frequency_hz, magnitude_db, phase_deg.
+    One file is one record.
 
     Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
     """
     from nrs_design.identification.actuator.identify import identify_actuator
     from nrs_design.identification.datasets.records import read_actuator
     from nrs_design.identification.reporting.actuator import view_actuator
-    from nrs_design.identification.write_spec import check_actuator, merge_actuator
+    from nrs_design.identification.write_spec import merge_actuator
 
     outputs = Destinations.checked(write, report, date)
-    files = read_all(data, read_actuator, columns or [])
-    records = [record for file in files for record in file]
-    if outputs.spec is not None:
-        for record in records:
-            check_actuator(outputs.spec, record.unit)
-    with progress("fitting") as step:
-        result = identify_actuator(records, covers, step)
+    records = read_all(data, read_actuator, columns or [])
+    with progress("fitting"):
+        result = identify_actuator(records)
     view = view_actuator(result)
-    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result, replace=narrower))
+    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result, _warn))
 
 
 @identify.command("delay")
 @command("identify-delay")
 def delay(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
-    command: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="What was sent; default: command_UNIT.")
-    ] = None,
-    measured: Annotated[
-        str | None,
-        typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
-    ] = None,
+    command: Annotated[str, typer.Option(metavar="COLUMN", help="What was sent.")],
+    measured: Annotated[str, typer.Option(metavar="COLUMN", help="What follows.")],
     columns: ColumnMap = None,
-    into: Annotated[
-        Literal["delay", "latency"],
-        typer.Option(help="What --write puts down: delay of the force, or latency."),
-    ] = "delay",
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -259,34 +228,20 @@ def delay(
     copy, a lag of first or second order, a lag with an integrator; the simplest decides that no
     other beats by 10 in BIC. The interval is at 95 %; parts of the record show whether the delay
     varies. --write is for two forces, the one that the sensor measured and the one that the law
-    used: its age is the delay of sampling. With --into latency it is for two commands, as the law
-    computed it and as the drive took it: the time between is the latency of sampling.
+    used: its age is the delay of sampling.
 
     Example: nrs-design identify delay run.csv --command force_raw --measured force_used
     """
     from nrs_design.identification.datasets.records import read_signals
     from nrs_design.identification.delay.identify import identify_delay
     from nrs_design.identification.reporting.delay import view_delay
-    from nrs_design.identification.write_spec import check_sampling, merge_sampling
+    from nrs_design.identification.write_spec import merge_sampling
 
-    if (command is None) != (measured is None):
-        raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
-    if command is not None and command == measured:
+    if command == measured:
         raise typer.BadParameter("name two columns", param_hint="--command, --measured")
-    if write is not None and command is None:
-        raise typer.BadParameter(
-            "name the command as computed by --command, and as the drive took it by --measured"
-            if into == "latency"
-            else "name the force as measured by --command, and as the law used it by --measured",
-            param_hint="--write",
-        )
     outputs = Destinations.checked(write, report, date)
-    if outputs.spec is not None:
-        check_sampling(outputs.spec, into)
-    entries = list(columns or [])
-    if command is not None:
-        entries += [f"input_any={command}", f"output_any={measured}"]
+    entries = [*(columns or []), f"input_any={command}", f"output_any={measured}"]
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         result = identify_delay(record)
-    return _deliver(outputs, view_delay(result), lambda spec: merge_sampling(spec, result, into))
+    return _deliver(outputs, view_delay(result), lambda spec: merge_sampling(spec, result))

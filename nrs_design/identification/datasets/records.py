@@ -2,37 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from nrs_design.axis import COMMAND_UNITS
-from nrs_design.identification.datasets.checks import (
-    check_saturation,
-    check_time,
-    check_turns,
-    check_varies,
-    find_stretches,
-    long_stretches,
-    pauses_text,
-)
-from nrs_design.identification.numeric import Array, Complex, usual_step
+from nrs_design.identification.numeric import Array, Flags, parted, runs, usual_step
+from nrs_design.identification.statistics import span
 from nrs_design.identification.tables.table import Data, MeasurementTable, Source, read_table
 from nrs_design.models.contact.motion import Motion
+from nrs_design.proof.text import counted
+from nrs_design.spec.plausible import doubt_size
+from nrs_design.spec.quantity import SMALLEST
 
 LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")
 ANGLE = ("time", "command", "angle")
 VELOCITY = ("time", "command", "velocity")
-FREE = (("input", "output"),)
-FOLLOWED = tuple(
-    ("command", output) for output in ("angle", "velocity", "torque", "force", "deflection")
-)
-RESPONSE = ("frequency", "magnitude", "phase")
-# In dB.
-_LOUDEST = 600.0
+# Samples that tell the velocity at the begin.
+_BEGIN = 10
+FEWEST_ROWS = 50
+# Length of a gap, in usual steps.
+GAP = 3.0
+# A sensor is saturated when its extreme reading repeats while this part of the motion passes.
+_FLAT_ROWS = 10
+_FLAT_MOTION = 0.05
+# Changes up to this number of units in the last place are rounding.
+_ROUNDING_UNITS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +41,7 @@ class TissueRecord:
     motion: Motion  # Time in s and deflection in m (rad)
     force: Array  # Shape (n,). In N (N m).
     rotational: bool  # Whether the motion is a rotation about the pivot
+    pauses: str = ""  # What pauses leave out, in words; empty for none
 
     @property
     def name(self) -> str:
@@ -62,15 +61,13 @@ class SignalRecord:
     output: Array
     is_angle: bool = True  # Output of a motor: angle, or velocity if False
     unit: str = "rpm"  # Unit of the command: ``rpm``, ``V``, ``A`` or ``counts``
-    part: int = 0  # Number of the stretch between pauses of the file, from 0
-    pauses: str | None = None  # Pauses of the file in words, with the first part
+    pauses: str = ""  # What pauses leave out, in words; empty for none
     names: tuple[str, str] = ("command", "output")  # Names of both columns in the file
 
     @property
     def name(self) -> str:
-        """File name without its ending, and the part beyond the first."""
-        part = f", part {self.part + 1}" if self.part else ""
-        return self.source.path.stem + part
+        """File name without its ending."""
+        return self.source.path.stem
 
     @cached_property
     def step(self) -> float:
@@ -78,24 +75,11 @@ class SignalRecord:
         return usual_step(self.time)
 
     @cached_property
-    def stretches(self) -> tuple[slice, ...]:
-        """The rows between pauses of the record."""
-        return find_stretches(self.time)
-
-    @cached_property
-    def longest(self) -> slice:
-        """The rows of the longest stretch."""
-        return max(self.stretches, key=lambda rows: rows.stop - rows.start)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FrequencyResponse:
-    """Velocity over command, at some frequencies."""
-
-    source: Source  # The file
-    frequency: Array  # Shape (m,). In rad/s.
-    response: Complex  # Shape (m,). In rad/s for each unit of the command.
-    unit: str = "rpm"  # Unit of the command of the thesis; no column states it
+    def first_velocity(self) -> float:
+        """Velocity of a motor at the begin, about, in rad/s."""
+        if not self.is_angle:
+            return float(self.output[0])
+        return float(np.polyfit(self.time[:_BEGIN], self.output[:_BEGIN], 2)[1])
 
 
 def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueRecord:
@@ -104,55 +88,23 @@ def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueR
     A mapping leads from a name in the file to ours. A column that is missing, a gap or step back
     of time, a value that is not finite and a saturated sensor are a `DataError` with the row.
     """
-    table = read_table(data, (LINEAR, ROTATIONAL), mapping or {})
+    table, pauses = _uninterrupted(read_table(data, (LINEAR, ROTATIONAL), mapping or {}))
     time, deflection, force = table.values.values()
-    check_time(table, time)
     check_varies(table, table.layout[1], deflection)
     check_varies(table, table.layout[2], force)
     check_saturation(table, table.layout[2], force, deflection)
     return TissueRecord(
-        table.source, Motion(time - time[0], deflection), force, table.layout == ROTATIONAL
+        table.source, Motion(time, deflection), force, table.layout == ROTATIONAL, pauses
     )
 
 
-def read_actuator(
-    data: Data, mapping: Mapping[str, str] | None = None
-) -> tuple[SignalRecord | FrequencyResponse, ...]:
-    """Read a record of the actuator, in parts between its pauses, or a frequency response.
+def read_actuator(data: Data, mapping: Mapping[str, str] | None = None) -> SignalRecord:
+    """Read a record of the actuator.
 
-    Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s``, or
-    ``frequency_hz, magnitude_db, phase_deg``.
+    Columns are ``time_s, command_rpm`` and ``angle_rad`` or ``velocity_rad_s``.
     """
-    table = read_table(data, (ANGLE, VELOCITY, RESPONSE), mapping or {})
-    if table.layout == RESPONSE:
-        return (_response(table),)
-    return tuple(_actuator(table))
-
-
-def read_signals(data: Data, mapping: Mapping[str, str] | None = None) -> SignalRecord:
-    """Read two columns: a command, and what follows it.
-
-    They are ``time_s, command_rpm`` and ``angle_rad`` or another measured one; any two others are
-    mapped to ``input_any`` and ``output_any``.
-    """
-    mapping = mapping or {}
-    chosen = {"input_any", "output_any"} & set(mapping.values())
-    layouts = [("time", *pair) for pair in (FREE if chosen else FOLLOWED)]
-    table = read_table(data, layouts, mapping)
+    table, pauses = _uninterrupted(read_table(data, (ANGLE, VELOCITY), mapping or {}))
     time, command, output = table.values.values()
-    check_time(table, time)
-    names = table.columns[table.layout[1]].name, table.columns[table.layout[2]].name
-    if table.layout[2] == "angle":
-        check_turns(table, output)
-    for name, values in zip(names, (command, output), strict=True):
-        check_varies(table, name, values)
-    return SignalRecord(table.source, time - time[0], command, output, names=names)
-
-
-def _actuator(table: MeasurementTable) -> list[SignalRecord]:
-    """Return a record for every stretch between pauses in which the motor moves."""
-    time, command, output = table.values.values()
-    check_time(table, time)
     check_varies(table, "command", command)
     check_varies(table, table.layout[2], output)
     unit = table.columns["command"].unit
@@ -162,31 +114,119 @@ def _actuator(table: MeasurementTable) -> list[SignalRecord]:
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)
-    parts: list[SignalRecord] = []
-    for rows in long_stretches(time):
-        t, u, y = time[rows], command[rows], output[rows]
-        if np.ptp(u) > 0 and np.ptp(y) > 0:
-            part = len(parts), None if parts else pauses_text(time - time[0])
-            parts.append(SignalRecord(table.source, t - t[0], u, y, is_angle, unit, *part))
-    if not parts:
-        table.fail("the motor moves in no stretch between its pauses", 0, "record a motion")
-    return parts
+    return SignalRecord(table.source, time, command, output, is_angle, unit, pauses)
 
 
-def _response(table: MeasurementTable) -> FrequencyResponse:
-    frequency, magnitude, phase = table.values.values()
-    if len(frequency) < 3:
+def read_signals(data: Data, mapping: Mapping[str, str]) -> SignalRecord:
+    """Read two columns that are mapped to ``input_any`` and ``output_any``."""
+    table, pauses = _uninterrupted(read_table(data, (("time", "input", "output"),), mapping))
+    time, command, output = table.values.values()
+    names = table.columns["input"].name, table.columns["output"].name
+    for name, values in zip(names, (command, output), strict=True):
+        check_varies(table, name, values)
+    return SignalRecord(table.source, time, command, output, pauses=pauses, names=names)
+
+
+def _uninterrupted(table: MeasurementTable) -> tuple[MeasurementTable, str]:
+    """Return the longest rows without a pause, time from zero, and what is left out."""
+    rows, pauses = check_time(table, table.values["time"])
+    values = {name: column[rows] for name, column in table.values.items()}
+    values["time"] = values["time"] - values["time"][0]
+    return replace(table, values=values, first_line=table.first_line + rows.start), pauses
+
+
+def doubt_step(step: float) -> Iterator[str]:
+    """Doubt a usual step in s that no logger has: seconds were read as milliseconds, or back."""
+    if question := doubt_size("recorded_step", step, "s", f"{step:.3g}"):
+        question = question.replace("its unit", "their unit")
+        yield f"the steps of time are {step:.3g} s: {question} (--map names another)"
+
+
+def find_gaps(time: Array) -> Flags:
+    """Tell between which of n rows others are missing, shape (n - 1,)."""
+    steps = np.diff(time)
+    return np.asarray(steps > GAP * np.median(steps))
+
+
+def check_time(table: MeasurementTable, time: Array) -> tuple[slice, str]:
+    """Check that time advances; return the longest rows without a pause, and what is left out."""
+    if len(time) < FEWEST_ROWS:
         table.fail(
-            f"{len(frequency)} frequencies are too few",
-            max(len(frequency) - 1, 0),
-            "measure at 3 or more",
+            f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed",
+            max(len(time) - 1, 0),
+            "record longer",
         )
-    bad = np.flatnonzero(frequency <= 0)
-    if len(bad):
-        table.fail("the frequency is not positive", int(bad[0]), "remove the row")
-    bad = np.flatnonzero(np.abs(magnitude) > _LOUDEST)
-    if len(bad):
-        size = f"the magnitude is {magnitude[bad[0]]:.4g} dB: no motor has such a gain"
-        table.fail(size, int(bad[0]), "correct the value, or remove the row")
-    response = 10 ** (magnitude / 20) * np.exp(1j * phase)
-    return FrequencyResponse(table.source, 2 * np.pi * frequency, response)
+    check_advance(table, time)
+    rows = longest_stretch(time)
+    if rows.stop - rows.start < FEWEST_ROWS:
+        steps = np.diff(time)
+        row = int(np.argmax(find_gaps(time))) + 1
+        table.fail(
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s, and no "
+            f"{FEWEST_ROWS} rows without one",
+            row,
+            "record without interruption",
+        )
+    if not (pauses := int(find_gaps(time).sum())):
+        return rows, ""
+    left = counted(len(time) - (rows.stop - rows.start), "row")
+    used = span(time[rows.start] - time[0], time[rows.stop - 1] - time[0], "s")
+    return rows, (
+        f"{counted(pauses, 'pause')} in the record: its longest stretch is used ({used}), and "
+        f"{left} left out; a stretch that is saved as a file is a record, too"
+    )
+
+
+def longest_stretch(time: Array) -> slice:
+    """Return the longest rows without a gap."""
+    return slice(*max(parted(find_gaps(time)), key=lambda ends: ends[1] - ends[0]))
+
+
+def check_advance(table: MeasurementTable, time: Array) -> None:
+    """Check that time advances."""
+    steps = np.diff(time)
+    stuck = np.flatnonzero(steps <= 0)
+    if len(stuck):
+        row = int(stuck[0]) + 1
+        word = "repeats" if steps[row - 1] == 0 else "goes back"
+        table.fail(
+            f"time {word}: {time[row]:.9g} s after {time[row - 1]:.9g} s",
+            row,
+            "sort the rows, or remove the doubled ones",
+        )
+    if len(time) and float(np.ptp(time)) <= SMALLEST:
+        table.fail("time hardly advances", len(time) - 1, "write it in s, ms, us or ns")
+
+
+def check_turns(table: MeasurementTable, angle: Array) -> None:
+    """Check that an angle does not jump by a whole turn, as a reading modulo 360 deg does."""
+    steps = np.abs(np.diff(angle))
+    jumps = np.flatnonzero(np.abs(steps - 2 * np.pi) < np.pi / 4)
+    if len(jumps) and float(np.median(steps)) < np.pi / 4:
+        table.fail(
+            "the angle jumps by a whole turn: it begins anew after each",
+            int(jumps[0]) + 1,
+            "count the turns, so that the angle goes on (np.unwrap)",
+        )
+
+
+def check_saturation(table: MeasurementTable, name: str, values: Array, moving: Array) -> None:
+    """Check that a sensor does not rest at its extreme reading during a motion."""
+    way = float(np.ptp(moving))
+    for extreme in {float(values.max()), float(values.min())} - {0.0}:
+        for first, last in runs(values == extreme):
+            if last - first >= _FLAT_ROWS and np.ptp(moving[first:last]) > _FLAT_MOTION * way:
+                table.fail(
+                    f"the {name} stays at its extreme reading {extreme:.6g} for "
+                    f"{last - first} rows: the sensor is saturated",
+                    first,
+                    "record with a larger measuring range",
+                )
+
+
+def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
+    """Check that a column is not constant, but for the rounding of its numbers."""
+    change = float(np.ptp(values))
+    if change <= max(SMALLEST, _ROUNDING_UNITS * np.finfo(float).eps * float(np.abs(values).max())):
+        by = f" by more than {change:.1g}, which is rounding" if change else ""
+        table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")

@@ -67,24 +67,13 @@ class Lagged(AbstractFollower):
         lags, held = self.lags(*map(exp, self.shape)), _hold(record, delay)
         output = (lags.angle if self.angle else lags.velocity)(held, held.command)[held.samples]
         constant = record.time if self.angle else np.ones_like(output)
-        return np.column_stack([output, constant, _free(record, lags, angle=self.angle)])
+        return np.column_stack([output, constant, lags.free(record.time, angle=self.angle)])
 
 
 @lru_cache(maxsize=32)
 def _hold(record: SignalRecord, delay: float) -> HeldCommand:
     """Return the delayed command; several shapes are tried at each delay."""
     return HeldCommand.of(record.time, record.command, delay)
-
-
-def _free(record: SignalRecord, lags: Lags, *, angle: bool) -> Array:
-    """Return the outputs of initial states, those of every stretch between pauses, (n, p)."""
-    parts = []
-    for rows in record.stretches:
-        free = lags.free(record.time[rows], angle=angle)
-        part = np.zeros((len(record.time), free.shape[1]))
-        part[rows] = free
-        parts.append(part)
-    return np.column_stack(parts)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,13 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import (
-    FEWEST_ROWS,
-    doubt_step,
-    find_gaps,
-    pauses_text,
-)
-from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, doubt_step
 from nrs_design.identification.delay.fit import (
     EXACT,
     AbstractFollower,
@@ -69,9 +63,8 @@ _OTHER_POWER = 0.01
 _SMOOTH = 0.05
 # Half width in samples of the search for the delay of a part of the record.
 _PART_RANGE = 50
-# Rows before a pause that a spline across it may miss, and rows after it that the command before
-# may reach.
-_ROWS_BEFORE, _ROWS_AFTER = 5, 5
+# Rows at the begin that the command before the record may reach.
+_ROWS_AFTER = 5
 # Grid of a first search: time constants and delays in samples, and the rows that it uses.
 _TIMES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
@@ -197,8 +190,7 @@ class DelayIdentification:
         )
         if not _hidden(self.chosen):
             rests = f"{command} is smooth between samples: parts of a sample are told"
-        pauses = pauses_text(self.record.time)
-        return (rests,) if pauses is None else (pauses, rests)
+        return (self.record.pauses, rests) if self.record.pauses else (rests,)
 
     @cached_property
     def doubts(self) -> tuple[str, ...]:
@@ -207,15 +199,13 @@ class DelayIdentification:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Doubts, and dynamics that make the delay more than the age of a sample."""
+        """Doubts, what pauses leave out, and dynamics beside which a delay is more than an age."""
+        said = (*self.doubts, self.record.pauses) if self.record.pauses else self.doubts
         if not isinstance(self.chosen.follower, Lagged):
-            return self.doubts
+            return said
         command, output = self.record.names
         name = self.chosen.follower.name
-        return (
-            *self.doubts,
-            f"{name} fits better between {command} and {output} than a mere delay",
-        )
+        return (*said, f"{name} fits better between {command} and {output} than a mere delay")
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
@@ -274,7 +264,7 @@ def _check_explained(found: DelayIdentification) -> None:
 
 def _longest(record: SignalRecord) -> float:
     """Return the longest delay in the search, in s."""
-    return _LONGEST * float(np.ptp(record.time[record.longest]))
+    return _LONGEST * float(record.time[-1])
 
 
 def is_smooth(record: SignalRecord) -> bool:
@@ -285,35 +275,24 @@ def is_smooth(record: SignalRecord) -> bool:
     """
     from scipy.interpolate import CubicSpline
 
-    missed, moved = 0.0, 0.0
-    for rows in record.stretches:
-        time, command = record.time[rows], record.command[rows]
-        if len(time) < 8:
-            continue
-        # At both ends, a spline is free.
-        between = CubicSpline(time[::2], command[::2])(time[1::2]) - command[1::2]
-        missed += 2 * float(np.sum(between[2:-2] ** 2))
-        moved += float(np.sum(np.diff(command) ** 2))
-    return missed <= _SMOOTH**2 * moved
+    time, command = record.time, record.command
+    # At both ends, a spline is free.
+    between = (CubicSpline(time[::2], command[::2])(time[1::2]) - command[1::2])[2:-2]
+    moved = np.diff(command)
+    return 2 * float(between @ between) <= _SMOOTH**2 * float(moved @ moved)
 
 
 def _fitted_rows(record: SignalRecord, lag: float) -> Rows:
-    """Return the rows that no command from before the record, or a pause of it, can reach."""
-    skipped = max(lag, 0.0) + _ROWS_AFTER * record.step
-    kept = []
-    for number, rows in enumerate(record.stretches):
-        time = record.time[rows]
-        part_rows = np.flatnonzero(time >= time[0] + skipped) + rows.start
-        kept.append(part_rows if number == len(record.stretches) - 1 else part_rows[:-_ROWS_BEFORE])
-    found = np.concatenate(kept)
-    if len(found) < FEWEST_ROWS:
+    """Return the rows that no command from before the record can reach."""
+    rows = np.flatnonzero(record.time >= max(lag, 0.0) + _ROWS_AFTER * record.step)
+    if len(rows) < FEWEST_ROWS:
         raise DataError(
-            f"{len(found)} rows are later than the largest correlation after its beginning, or a "
-            f"pause, at least {FEWEST_ROWS} are needed",
+            f"{len(rows)} rows are later than the largest correlation after its beginning, at "
+            f"least {FEWEST_ROWS} are needed",
             path=record.source.path,
             remedy="record longer without a pause",
         )
-    return found
+    return rows
 
 
 def _hidden(fit: DelayFit) -> float:
@@ -352,12 +331,11 @@ def correlation_peak(record: SignalRecord) -> tuple[float, float]:
     Columns are compared by their changes where those are alike more clearly, which is so for
     columns that drift.
     """
-    rows = record.longest
-    time = record.time[rows]
+    time = record.time
     even = np.linspace(time[0], time[-1], len(time))
     longest = max(int(_LONGEST * len(time)), 2)
     lags = np.arange(-longest, longest + 1)
-    u, y = (np.interp(even, time, values[rows]) for values in (record.command, record.output))
+    u, y = (np.interp(even, time, values) for values in (record.command, record.output))
     peaks = []
     for a, b in ((u, y), (np.diff(u), np.diff(y))):
         alike = _correlations(a - np.mean(a), b - np.mean(b), lags)
@@ -453,8 +431,7 @@ def _part_of_other_frequencies(record: SignalRecord) -> float:
     """Return which part of the command's power no swing of one frequency explains."""
     from scipy.optimize import minimize_scalar
 
-    time, command = record.time[record.longest], record.command[record.longest]
-    command = command - command.mean()
+    time, command = record.time, record.command - record.command.mean()
     count, even = len(command), np.linspace(time[0], time[-1], len(command))
     spectrum = np.abs(np.fft.rfft(np.interp(even, time, command)))
     bin_ = 1 / (count * float(even[1] - even[0]))
@@ -514,8 +491,7 @@ def _doubts(found: DelayIdentification) -> Iterator[str]:
     if fit.missed_part > _MISSED and fit.uncertainty.whiteness < WHITE:
         missed = f"{100 * fit.missed_part:.2g} %"
         yield f"the model misses {missed} of the motion, in errors that are not noise"
-    steps = np.diff(record.time)
-    jitter = float(np.ptp(steps[~find_gaps(record.time)])) / record.step
+    jitter = float(np.ptp(np.diff(record.time))) / record.step
     if jitter > 0.1:
         yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
     estimates = [part for _, part in found.parts]

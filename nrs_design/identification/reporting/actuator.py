@@ -2,70 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-import numpy as np
+from collections.abc import Iterator, Sequence
 
 from nrs_design.identification.actuator.fit import DEAD_TIME_NOTE
 from nrs_design.identification.actuator.identify import ActuatorIdentification
-from nrs_design.identification.datasets.records import FrequencyResponse
-from nrs_design.identification.reporting.figures import draw_fit, draw_response
 from nrs_design.identification.reporting.view import (
     MAX_FIGURES,
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
-    figure_names,
     label_of,
 )
 from nrs_design.identification.statistics import Estimate
-from nrs_design.reporting.document import Bullets, Illustration, Section, Table
+from nrs_design.reporting.document import Bullets, Illustration, Section
 
 
 def view_actuator(result: ActuatorIdentification) -> FindingView:
     """Return the output of the identification of an actuator."""
     fit, rows = result.fit, _rows(result)
     lines = [f"{name} = {value} {unit}" for name, value, unit, _ in rows]
-    if fit.dead_time and result.step:
+    if fit.dead_time:
         samples = fit.dead_time.scaled(1 / result.step)
         lines.append(f"dead time = {samples} samples of {result.step:.4g} s, {DEAD_TIME_NOTE}")
     lines += [f"range: {name} {wide} {unit}" for name, _, unit, wide in rows if wide]
     lines.append(f"the range holds {result.covers}")
-    said = (f"{name} {value} {unit}" for name, value, unit, _ in rows)
     return FindingView(
         result,
         kind="actuator",
-        chosen=fit.method,
+        chosen="output in the time domain",
         reason="",
         ranges={name.replace(" ", "_"): (wide, unit) for name, _, unit, wide in rows if wide},
         facts=_facts(result),
         lines=lines,
-        details=(f"fit to the {fit.method}",),
-        fits=_table(result),
+        details=(),
+        fits=None,
         title="Velocity model with Coulomb friction and dead time",
-        claim=f"Fit to the {fit.method}: {', '.join(said)}.",
-        sections=lambda: _sections(result),
+        claim=f"Fitted to the output in time: {lines[0]}, {lines[1]}.",
+        sections=lambda: _sections(result, lines),
     )
 
 
 def _rows(result: ActuatorIdentification) -> list[tuple[str, Estimate | str, str, Estimate | None]]:
     """Return name, estimate or reason for none, unit, and range for a spec."""
-    fit, (gain, time_constant) = result.fit, result.ranges
-    late = "taken for zero" if fit.motor is None else "not determined"
+    fit, (gain, time_constant) = result.fit, result.fit.ranges
     return [
         ("gain", fit.gain, f"(rad/s)/{result.unit}", gain),
         ("time constant", fit.time_constant, "s", time_constant),
         ("friction", fit.friction or "not determined", result.unit, None),
-        ("dead time", fit.dead_time or late, "s", None),
+        ("dead time", fit.dead_time or "not determined", "s", None),
     ]
-
-
-def _table(result: ActuatorIdentification) -> Table:
-    rows = tuple(
-        (name, str(value), str(wide or ""), unit) for name, value, unit, wide in _rows(result)
-    )
-    columns = ("Parameter", "Value [95 % interval]", "Range for a spec", "Unit")
-    return Table("Estimates", columns, rows)
 
 
 def _facts(result: ActuatorIdentification) -> Facts:
@@ -74,43 +60,33 @@ def _facts(result: ActuatorIdentification) -> Facts:
     return {
         "command_unit": result.unit,
         "sampling_step_s": result.step,
-        "method": fit.method,
         gain: estimate_numbers(fit.gain),
         "time_constant_s": estimate_numbers(fit.time_constant),
         f"friction_{result.unit}": estimate_numbers(fit.friction) if fit.friction else None,
         "dead_time_s": estimate_numbers(late) if late else None,
         "whiteness_p": fit.uncertainty.whiteness,
         "range": {
-            gain: estimate_numbers(result.ranges[0]),
-            "time_constant_s": estimate_numbers(result.ranges[1]),
+            gain: estimate_numbers(result.fit.ranges[0]),
+            "time_constant_s": estimate_numbers(result.fit.ranges[1]),
         },
-        "range_covers": result.coverage,
+        "range_covers": "confidence",
         "range_covers_words": result.covers,
     }
 
 
-def _sections(result: ActuatorIdentification) -> Iterator[Section]:
-    text = f"The range holds {result.covers}. A proof over that range is about these motors."
-    yield Section("Parameters", (_table(result), Bullets("", (text,))))
+def _sections(result: ActuatorIdentification, lines: Sequence[str]) -> Iterator[Section]:
+    text = "A proof over the range is about these motors."
+    yield Section("Parameters", (Bullets("", (*lines, text)),))
     yield Section("Measured against fitted", tuple(_figures(result)))
 
 
 def _figures(result: ActuatorIdentification) -> Iterator[Illustration]:
-    note, motor = label_of(result.sources), result.fit.motor
-    for item in result.data:
-        if isinstance(item, FrequencyResponse):
-            w = item.frequency
-            fine = np.geomspace(w.min() / 1.5, w.max() * 1.5, 200)
-            figure = draw_response(w, item.response, (fine, result.fit.response(fine)))
-            about = f"{note}Magnitude relative to 1 (rad/s)/{result.unit}."
-            yield Illustration("response", "Velocity over command", about, figure)
-    records = result.records[:MAX_FIGURES]
-    for record, name in zip(records, figure_names([r.name for r in records]), strict=True):
-        assert motor is not None
+    note = label_of(result.sources)
+    for number, record in enumerate(result.records[:MAX_FIGURES], 1):
         label = "Angle [rad]" if record.is_angle else "Velocity [rad/s]"
         yield Illustration(
-            f"output-{name}",
+            f"output-{number}",
             record.name,
             f"{note}Only the initial state is adapted to this record.",
-            draw_fit(record.time, record.output, motor.simulate(record), label),
+            draw_fit(record.time, record.output, result.fit.motor.simulate(record), label),
         )

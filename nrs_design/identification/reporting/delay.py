@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.identification.delay.identify import DelayIdentification
-from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
     label_of,
     marked,
@@ -16,13 +16,6 @@ from nrs_design.identification.reporting.view import (
 from nrs_design.identification.statistics import span
 from nrs_design.reporting.document import Illustration, Section, Table
 from nrs_design.reporting.formatting import number
-
-_MEANING = (
-    "The delay is dead time beyond the dynamics of the model beside it; a loop of another model "
-    "has another delay. The least BIC chose the model.",
-    "The interval is at 95 % for a constant delay; parts of the record show whether it varies, at "
-    "95 % for all parts together.",
-)
 
 
 def view_delay(result: DelayIdentification) -> FindingView:
@@ -53,7 +46,6 @@ def view_delay(result: DelayIdentification) -> FindingView:
         claim=f"{result.samples} samples of {number(step, 4)} s, beside {model}. Whole "
         f"samples that hold it and every part of the record: {whole}.",
         sections=lambda: _sections(result),
-        meaning=_MEANING,
     )
 
 

@@ -4,36 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from nrs_design.identification.reporting.figures import draw_log
 from nrs_design.identification.reporting.view import (
     Facts,
     facts_of,
     label_of,
     source_facts,
     source_section,
+    thinned,
 )
 from nrs_design.identification.running.bounds import Check
 from nrs_design.identification.running.judge import RunJudgement
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
+from nrs_design.reporting.style import ALARM, INK, MUTED, new_figure, styled
 from nrs_design.spec import LoadedSpec
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CLAIMS = {
     "inside": "the run stayed inside what was proved",
     "outside": "the run left its bounds",
     "inconclusive": "no bound was left as far as could be judged",
 }
+# Columns of a run, from the top.
+_LABELS = {
+    "angle": "Angle [rad]",
+    "torque": "Torque [N m]",
+    "deflection": "Deflection [m]",
+    "force": "Force [N]",
+    "velocity": "Velocity [rad/s]",
+    "command": "Command",
+    "mode": "Mode",
+}
 _FOOTER = "Page of nrs-design. A run is one run, not a proof."
-_PROVED = "A run inside its bounds is one run; the proof is about all of them."
-_NO_PROOF = (
-    "A run inside its bounds is one run, and nothing is proved about others: name a certificate by "
-    "--certificate."
-)
-_MEANING = (
-    "Undecided: more than one reading of the log is possible.",
-    "Not judged: the log lacks a column, or a bound is not known. Not modelled: the model takes "
-    "for granted that there is none of it.",
-)
 
 
 def first_violation(run: RunJudgement) -> str:
@@ -75,7 +80,6 @@ def run_facts(
             for c in run.checks
         ],
         "judged_share_of_rows": run.judged,
-        "stiffness_not_tested_because": run.hint or None,
     }
 
 
@@ -89,9 +93,8 @@ def run_report(run: RunJudgement, name: str, reason: str) -> Report:
     """Return the page of a run."""
     sources = [run.log.source]
     claim = first_violation(run) or CLAIMS[run.verdict]
-    limit = _PROVED if run.bounds.proved else _NO_PROOF
     note = "Dashed: the first violation, if there is one."
-    figure = Illustration("run", "The log", note, draw_log(run))
+    figure = Illustration("run", "The log", note, _draw(run))
     return Report(
         name=f"run-{name}",
         title=f"A run of {name}",
@@ -102,7 +105,6 @@ def run_report(run: RunJudgement, name: str, reason: str) -> Report:
         sections=(
             Section("Checks", tuple(_tables(run))),
             Section("Figures", (figure,)),
-            Section("How to read this", (Bullets("", (*_MEANING, limit)),), boxed=True),
             source_section(sources),
         ),
         footer=_FOOTER,
@@ -119,3 +121,27 @@ def _tables(run: RunJudgement) -> Iterator[Block]:
     )
     if left:
         yield Bullets("First violations", left)
+
+
+@styled
+def _draw(run: RunJudgement) -> Figure:
+    """Draw every column of a log over time."""
+    log, first = run.log, run.first
+    names = [name for name in _LABELS if name in log.columns]
+    figure = new_figure(0.8 + 1.15 * len(names))
+    rows = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+    pick = thinned(len(log.time))
+    for axes, name in zip(rows, names, strict=True):
+        values = log.columns[name][pick]
+        axes.step(log.begin + log.time[pick], values, where="post", color=INK, linewidth=1.0)
+        label = _LABELS[name] + (f" [{log.command_unit}]" if name == "command" else "")
+        axes.set_ylabel(label, fontsize=8.5)
+        if name == "mode":
+            axes.set_yticks(range(len(log.labels)), log.labels)
+        if name == "torque":
+            for sign in (-1, 1):
+                axes.axhline(sign * run.bounds.torque, color=MUTED, linestyle=":", linewidth=1)
+        if first is not None and first.first is not None:
+            axes.axvline(first.first.time, color=ALARM, linestyle="--", linewidth=1.2)
+    rows[-1].set_xlabel("Time [s]")
+    return figure

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
-from nrs_design.identification.reporting.figures import draw_fit
 from nrs_design.identification.reporting.view import (
     MAX_FIGURES,
     Facts,
     FindingView,
+    draw_fit,
     estimate_numbers,
-    figure_names,
     label_of,
     marked,
 )
 from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue.identify import TissueIdentification
+from nrs_design.identification.tissue.offsets import DRIFT, TARE, ZERO
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.tangent import Tangent
@@ -27,18 +27,12 @@ from nrs_design.reporting.formatting import number, shortened
 
 T = TypeVar("T")
 
-_MEANING = (
-    "Intervals are 95 % confidence intervals of the pooled parameters; with several records they "
-    "hold the spread between records.",
-    "The range over all records also covers the interval of every single record; its table says "
-    "what else it holds.",
-    "Position of contact and force in air are fitted with the law, if they are not given. Samples "
-    "that are not used are drawn pale.",
-    "RMSE and BIC, which is a sum over the records, are those of parameters of its own in each "
-    "record.",
-    "The p-value of the whiteness test is small where residuals are not white noise: the law then "
-    "misses something, and its intervals come from the scatter between parts of the record.",
-)
+# Names of offsets, and their units for a linear motion and a rotation.
+_OFFSETS = {
+    ZERO: ("position of contact", ("m", "rad")),
+    TARE: ("force in air", ("N", "N m")),
+    DRIFT: ("drift of the force", ("N/s", "N m/s")),
+}
 
 
 def view_tissue(result: TissueIdentification, arm: float | None = None) -> FindingView:
@@ -63,7 +57,6 @@ def view_tissue(result: TissueIdentification, arm: float | None = None) -> Findi
         title=f"Tissue law from {counted(len(result.records), 'record')}",
         claim=f"{law.formula} with {values}. {result.reason}",
         sections=lambda: _sections(result, arm),
-        meaning=_MEANING,
     )
 
 
@@ -109,12 +102,19 @@ def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
             (
                 f"{fit.record.name}: {int(fit.trial.used.sum())} of "
                 f"{counted(len(fit.record.force), 'sample')} used",
-                *(offset.text(rotational=result.rotational) for offset in fit.offsets),
+                *_offset_texts(fit, result.rotational),
                 *fit.trial.remarks,
             )
         )
         for fit in result.chosen.fits
     )
+
+
+def _offset_texts(fit: RecordFit, rotational: bool) -> Iterator[str]:
+    for name, value in fit.offsets.items():
+        words, units = _OFFSETS[name]
+        rest = " if the force in air is zero" * (name == ZERO and TARE not in fit.offsets)
+        yield f"{words} {value:.5g} {units[rotational]}{rest}"
 
 
 def _table(result: TissueIdentification) -> Table:
@@ -185,11 +185,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
         "parameters": _numbers(fit.law, fit.estimates, rotational),
         "rmse": fit.rmse,
         "bic": fit.bic,
-        "offsets": {
-            offset.name: estimate_numbers(offset.estimate)
-            | {"fitted": offset.fitted, "provided": offset.provided or None}
-            for offset in fit.offsets
-        },
+        "offsets": fit.offsets,
         "used": int(fit.trial.used.sum()),
         "samples": len(fit.record.force),
         "cuts": list(fit.trial.cuts),
@@ -201,7 +197,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
 
 
 def _sections(result: TissueIdentification, arm: float | None) -> Iterator[Section]:
-    used = Bullets("Offsets are with 95 % intervals", _record_texts(result))
+    used = Bullets("", _record_texts(result))
     yield Section("What of the records is used", (used,))
     yield Section("Comparison of laws", (_table(result), *_doubts(result)))
     yield Section("Parameters of the chosen law", tuple(_parameters(result, arm)))
@@ -236,12 +232,11 @@ def _parameters(result: TissueIdentification, arm: float | None) -> Iterator[Blo
 
 
 def _figures(result: TissueIdentification) -> Iterator[Illustration]:
-    fits = result.chosen.fits[:MAX_FIGURES]
-    for fit, name in zip(fits, figure_names([fit.record.name for fit in fits]), strict=True):
+    for number_, fit in enumerate(result.chosen.fits[:MAX_FIGURES], 1):
         trial = fit.trial
         label = "Torque [N m]" if result.rotational else "Force [N]"
         yield Illustration(
-            f"fit-{name}",
+            f"fit-{number_}",
             fit.record.name,
             f"{label_of(result.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
             f"whiteness p = {fit.uncertainty.whiteness:.2g}.",

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from nrs_design import __version__
+from nrs_design.identification.numeric import Array, Flags
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
+from nrs_design.reporting.document import Report, Section, Table
+from nrs_design.reporting.style import BLUE, INK, VERMILLION, legend, new_figure, styled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from nrs_design.identification.actuator.identify import ActuatorIdentification
     from nrs_design.identification.delay.identify import DelayIdentification
     from nrs_design.identification.statistics import Estimate
@@ -37,6 +42,10 @@ SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 MAX_FIGURES = 6
 _FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
 _FILES = "Data files"
+# Most points of a curve on a page.
+_POINTS = 1500
+_MEASURED = "#7d8894"
+_UNUSED = "#d9b7a0"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,11 +60,10 @@ class FindingView:
     facts: Facts  # Facts of this kind of identification
     lines: Sequence[str]  # For a terminal
     details: Sequence[str]  # Further lines with ``-v``
-    fits: Table  # All fits
+    fits: Table | None  # All fits, where there are several
     title: str  # Title of the page
     claim: str  # First sentences of the page
     sections: Callable[[], Iterable[Section]]  # Draws the rest of the page
-    meaning: tuple[str, ...] = ()  # Explanations of the page
 
     @property
     def document(self) -> Facts:
@@ -73,7 +81,6 @@ class FindingView:
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
         result = self.result
-        read = Section("How to read this", (Bullets("", self.meaning),), boxed=True)
         return Report(
             name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
             title=self.title,
@@ -83,24 +90,10 @@ class FindingView:
                 *(f"Remark: {remark}." for remark in result.remarks),
                 *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
-            lights=_lights(result),
             facts=facts_of(result.sources),
-            sections=(
-                *self.sections(),
-                *([read] if self.meaning else ()),
-                source_section(result.sources),
-            ),
+            sections=(*self.sections(), source_section(result.sources)),
             footer=_FOOTER,
         )
-
-
-def _lights(result: Finding) -> tuple[Light, Light]:
-    data = Light("Data", State.GOOD, "measured", _FILES)
-    if is_synthetic(result.sources):
-        data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", _FILES)
-    if result.caveats:
-        return data, Light("Doubts", State.DOUBTFUL, counted(len(result.caveats), "doubt"))
-    return data, Light("Doubts", State.GOOD, "none")
 
 
 def facts_of(sources: Sequence[Source]) -> tuple[tuple[str, str], ...]:
@@ -146,9 +139,33 @@ def marked(name: str, *, chosen: bool) -> str:
     return f"{name} (chosen)" if chosen else name
 
 
-def figure_names(names: Sequence[str]) -> list[str]:
-    """Return names of figures for names of records, no two alike."""
-    plain = [re.sub(r"[^A-Za-z0-9-]+", "-", name) for name in names]
-    if len(set(plain)) == len(plain):
-        return plain
-    return [f"{index}-{name}" for index, name in enumerate(plain, 1)]
+@styled
+def draw_fit(
+    time: Array, measured: Array, fitted: Array, label: str, used: Flags | None = None
+) -> Figure:
+    """Draw a measured and a fitted output over time in s, and their difference below.
+
+    Samples that were not used for the fit are pale.
+    """
+    pick = thinned(len(time))
+    shown = np.ones(len(time), bool)[pick] if used is None else used[pick]
+    figure = new_figure(4.4)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
+    t, data, curve = time[pick], measured[pick], fitted[pick]
+    upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
+    if not shown.all():
+        upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
+    upper.plot(t, np.where(shown, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.set_ylabel(label)
+    lower.plot(t[shown], (data - curve)[shown], ".", color=VERMILLION, markersize=2.5)
+    lower.axhline(0.0, color=INK, linewidth=0.8)
+    # Short enough for its height.
+    lower.set_ylabel("Data - fitted")
+    lower.set_xlabel("Time [s]")
+    legend(figure, upper)
+    return figure
+
+
+def thinned(count: int) -> slice:
+    """Return which of many points are drawn."""
+    return slice(None, None, max(1, -(-count // _POINTS)))

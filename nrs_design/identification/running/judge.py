@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds
 from nrs_design.identification.running.log import RunLog
-from nrs_design.identification.running.sector import hint, judge_sector
+from nrs_design.identification.running.sector import judge_sector
 from nrs_design.identification.running.signals import (
     judge_delay,
     judge_force,
@@ -35,11 +35,6 @@ class RunJudgement:
         """The check that was violated first, or None."""
         left = [check for check in self.checks if check.first is not None]
         return min(left, key=lambda c: c.first.time if c.first else 0.0, default=None)
-
-    @property
-    def hint(self) -> str:
-        """Reason for an untested stiffness, with a remedy; empty for a tested one."""
-        return hint(self.log, self.bounds)
 
     @property
     def verdict(self) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
-from nrs_design.identification.rounding import resolution
 from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
@@ -20,8 +19,6 @@ from nrs_design.identification.statistics import span
 _ROUNDING = 2.0**-48
 # Rows further apart than this number of periods leave samples out.
 _LONGEST_STEP = 1.5
-# Standard deviations that bound normal noise over an hour of samples, nearly always.
-_SCATTERS = 6.0
 # Part of a row by which an age may exceed a whole number of rows.
 _AGE_TOLERANCE = 0.05
 
@@ -72,26 +69,6 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], flo
     share = float((judged & certain).mean())
     check = _stiffness(log, columns[1], first, share, allowed, basis)
     return (check, *_speed(log, columns[0], sector, basis)), share
-
-
-def hint(log: RunLog, bounds: RunBounds) -> str:
-    """Say why the stiffness is not tested, and what the log would let a spec say; else nothing."""
-    columns = _columns(log, bounds)
-    if not isinstance(bounds.sector, str) or columns is None:
-        return ""
-    angle, torque = (_SCATTERS * _scatter(column) for column in columns)
-    return (
-        f"stiffness not tested: {bounds.sector}; from row to row this log scatters within "
-        f"`torque_noise: {torque:.2g} N*m, angle_noise: {angle:.2g} rad` ({_SCATTERS:g} standard "
-        "deviations; bias, drift and what bends come on top)"
-    )
-
-
-def _scatter(x: Array) -> float:
-    """Return the standard deviation of white noise on a smooth signal, jumps aside."""
-    # Binomial coefficients 1, 3, 3, 1, and the quartile of a normal distribution.
-    rough = float(np.median(np.abs(np.diff(x, 3)))) / np.sqrt(20) / 0.6745
-    return float(np.hypot(rough, resolution(x) / np.sqrt(12)))
 
 
 def _columns(log: RunLog, bounds: RunBounds) -> tuple[Array, Array] | None:

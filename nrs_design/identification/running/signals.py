@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, longest_stretch
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.rounding import noise_variance
 from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
@@ -25,9 +25,14 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     if "command" not in log.columns or seen is None:
         missing = "command" if "command" not in log.columns else "angle or velocity"
         return Check.open("delay", f"no column for {missing}")
-    pair = log.columns["command"], log.columns[seen]
+    rows = longest_stretch(log.time)
+    if rows.stop - rows.start < FEWEST_ROWS:
+        return Check.open("delay", f"no {FEWEST_ROWS} rows without a gap")
+    time, sent, moved = log.time[rows], log.columns["command"][rows], log.columns[seen][rows]
     try:
-        found = identify_delay(SignalRecord(log.source, log.time, *pair, names=("command", seen)))
+        found = identify_delay(
+            SignalRecord(log.source, time - time[0], sent, moved, names=("command", seen))
+        )
     except DataError as error:
         return Check.open("delay", error.message)
     low, high = found.delay.low, found.delay.high
@@ -39,7 +44,9 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
         return Check.open("delay", f"not told by this record: {found.doubts[0]}")
     if bounds.delay is None:
         return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
-    status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE
+    # Beside gaps, only the longest stretch is judged.
+    whole = rows.stop - rows.start == len(log.time)
+    status = BoundStatus.INSIDE if high < bounds.delay and whole else BoundStatus.UNDECIDED
     first = None
     if low > bounds.delay:
         status, first = BoundStatus.OUTSIDE, Violation(log.begin, words)

@@ -39,9 +39,6 @@ UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "mode": {"": 1.0},
         "input": {"any": 1.0},
         "output": {"any": 1.0},
-        "frequency": {"hz": 1.0, "khz": 1e3},
-        "magnitude": {"db": 1.0},
-        "phase": {"deg": pi / 180, "rad": 1.0},
     }
 )
 # The unit that values of a command have once they are read.
@@ -49,37 +46,19 @@ _READ_AS = {
     **dict.fromkeys(("rad_s", "deg_s"), "rpm"),
     **{"mV": "V", "mA": "A", "deg": "rad", "Nm": "N*m"},
 }
-# Quantities of other words and letters, if their unit fits: a position in deg is an angle.
-_WORDS: Mapping[str, tuple[str, ...]] = {
-    "t": ("time", "torque"),
-    **dict.fromkeys(("load", "f"), ("force",)),
-    **dict.fromkeys(("moment", "m"), ("torque",)),
-    **dict.fromkeys(("speed", "w", "omega"), ("velocity",)),
-    **dict.fromkeys(("position", "pos"), ("deflection", "angle")),
-    **dict.fromkeys(("displacement", "extension", "indentation", "disp"), ("deflection",)),
-    **dict.fromkeys(("x", "y", "z", "d", "s", "delta"), ("deflection",)),
-    **dict.fromkeys(("phi", "theta", "alpha"), ("angle",)),
-}
-# Words that count before an underscore, too, or above a unit; letters there may mean anything.
-FULL_WORDS = frozenset({"t", "load", "moment", "speed", "displacement", "extension", "indentation"})
-# Units as other programs spell them, in small letters without blanks.
+# Units as other programs spell them, in small letters.
 _SPELLINGS = {
-    **dict.fromkeys(("sec", "second", "seconds"), "s"),
-    **{"msec": "ms", "usec": "us", "µs": "us", "nsec": "ns"},
-    **{"µm": "um", "inch": "in", "µn": "uN", "kilonewton": "kN", "kp": "kgf"},
-    **dict.fromkeys(("n", "newton", "newtons"), "N"),
-    **dict.fromkeys(("n*m", "n-m", "n.m"), "Nm"),
-    **dict.fromkeys(("°", "degree", "degrees"), "deg"),
-    **{"radians": "rad", "rad/s": "rad_s", "deg/s": "deg_s", "°/s": "deg_s"},
-    **{"rev/min": "rpm", "1/min": "rpm", "volt": "V", "volts": "V", "pwm": "counts"},
-    **{"hz": "hz", "khz": "khz", "db": "db"},
+    **dict.fromkeys(("sec", "seconds"), "s"),
+    **{"µs": "us", "µm": "um", "µn": "uN", "n": "N"},
+    **dict.fromkeys(("n*m", "n m"), "Nm"),
+    **{"°": "deg", "rad/s": "rad_s", "deg/s": "deg_s", "°/s": "deg_s", "pwm": "counts"},
 }
-_BRACKETED = re.compile(r"^(?P<what>[^\[\](){}]+?)\s*[\[({](?P<unit>[^\[\](){}]*)[\])}]$")
-_SLASHED = re.compile(r"^(?P<what>[A-Za-z ]+?)\s*[/,]\s*(?P<unit>\S+)$")
+_BRACKETED = re.compile(r"^(?P<what>[^\[\]()]+?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]$")
 # Endings of foreign names that may be a unit, and are as often a minimum, a motor or a sensor A.
 _NO_ENDINGS = frozenset({"", "any", "s", "m", "min", "in", "A"})
 # Units in brackets of other quantities.
 _FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
+_KNOWN = frozenset(unit for units in UNITS.values() for unit in units)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,45 +93,31 @@ def standard_name(quantity: str) -> str:
 
 
 def read_name(text: str) -> Name | None:
-    """Take a name apart: ``angle_rad``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
+    """Take a name apart: ``angle_rad``, ``Force [N]``, ``Force (kN)``.
 
-    None if it names no quantity of ours; the unit of one in its full name may be unknown or empty.
+    None if it names no quantity of ours; the unit of one that does may be unknown or empty.
     """
-    text = text.strip()
-    bracketed = _BRACKETED.match(text) or _SLASHED.match(text)
-    what, _, rest = text.partition("_")
+    bracketed = _BRACKETED.match(text.strip())
+    what, _, unit = text.strip().partition("_")
     if bracketed:
-        what, rest = bracketed["what"].strip(), bracketed["unit"]
-    word = what.lower()
-    # The time of any clock is a time.
-    quantities = ("time",) if word.endswith(" time") else _WORDS.get(word, ())
-    if word in UNITS:
-        quantities = (word,)
-    elif not bracketed and word not in FULL_WORDS:
-        return None
-    names = [Name(q, read_unit(rest, q)) for q in quantities]
-    # Another word counts only with its unit.
-    return next((name for name in names if name.is_known or word in UNITS), None)
+        what, unit = bracketed["what"], bracketed["unit"]
+    quantity = what.lower()
+    return Name(quantity, _read_unit(unit, quantity)) if quantity in UNITS else None
 
 
-def read_unit(text: str, quantity: str) -> str:
+def _read_unit(text: str, quantity: str) -> str:
     """Return our name of a unit, or the text itself if it is not known."""
-    plain = text.strip().replace("μ", "µ").replace("·", "*").replace("⋅", "*")
-    if plain in UNITS[quantity]:
-        return plain
-    return _SPELLINGS.get(plain.lower().replace(" ", ""), plain)
+    plain = text.strip().replace("μ", "µ").replace("·", "*")
+    return plain if plain in UNITS[quantity] else _SPELLINGS.get(plain.lower(), plain)
 
 
-def stated_unit(text: str, quantity: str) -> str | None:
+def _stated_unit(text: str, quantity: str) -> str | None:
     """Return the known unit in a foreign name such as ``Weg [mm]`` or ``load_kN``, or None."""
-    known = {unit for units in UNITS.values() for unit in units}
-    bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())
-    if bracketed:
-        unit = read_unit(bracketed["unit"], quantity)
-        return unit if unit in (known - {""}) | _FOREIGN else None
-    words = text.strip().split("_")
-    endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
-    return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)
+    if bracketed := _BRACKETED.match(text.strip()):
+        unit = _read_unit(bracketed["unit"], quantity)
+        return unit if unit in (_KNOWN - {""}) | _FOREIGN else None
+    endings = (unit for unit in _KNOWN - _NO_ENDINGS if text.endswith(f"_{unit}"))
+    return max(endings, key=len, default=None)
 
 
 # Returns an error about a file.
@@ -235,20 +200,19 @@ def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail)
             near = difflib.get_close_matches(theirs, header, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it has {_header_text(header)}"
             raise fail(f"there is no column {theirs!r} to map", remedy=hint)
-        check_stated(theirs, theirs, ours, fail)
+        _check_stated(theirs, ours, fail)
 
 
-def check_stated(theirs: str, text: str, ours: str, fail: Fail) -> None:
-    """Refuse a mapping whose unit contradicts a text about the column, such as its name."""
+def _check_stated(theirs: str, ours: str, fail: Fail) -> None:
+    """Refuse a mapping whose unit contradicts the name of the column."""
     name = _read_standard_name(ours, fail)
-    unit = stated_unit(text, name.quantity)
+    unit = _stated_unit(theirs, name.quantity)
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
+    remedy = f"map another column; if this is one in {name.unit}, correct its name"
     if unit in UNITS[name.quantity]:
         right = f"{name.quantity}_{unit}"
         remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
-    else:
-        remedy = f"map another column; if this is one in {name.unit}, correct its name"
     raise fail(
         f"--map '{ours}={theirs}': the column {theirs!r} says {unit}, and {ours} is in {name.unit}",
         remedy=remedy,

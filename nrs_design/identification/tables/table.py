@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from io import StringIO
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any, BinaryIO, NoReturn
@@ -16,7 +18,6 @@ from nrs_design.errors import DataError
 from nrs_design.files import open_regular
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.tables.columns import UNITS, Column, find_columns, standard_name
-from nrs_design.identification.tables.header import UNDECIDED, Header, read_decimal, read_header
 from nrs_design.proof.text import quoted
 from nrs_design.spec.quantity import LARGEST
 
@@ -25,9 +26,11 @@ Data = Path | Mapping[str, Any]
 
 MAX_ROWS = 10_000_000
 MAX_LABELS = 1000
-_LONGEST_LINE = 1 << 20
+_LARGEST_FILE = 1 << 29
 _PREAMBLE = 100
 _ARRAYS = Path("arrays")
+# Signs that a comment begins with.
+_COMMENT = "#%"
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,17 +132,15 @@ def _read(
     mapping: Mapping[str, str],
     optional: tuple[str, ...],
 ) -> MeasurementTable:
-    hashed = hashlib.sha256()
-    while block := file.read(_LONGEST_LINE):
-        hashed.update(block)
-    file.seek(0)
-    lines = _lines(file, path)
-    head = list(islice(lines, _PREAMBLE + 1))
+    raw = file.read(_LARGEST_FILE + 1)
+    if len(raw) > _LARGEST_FILE:
+        raise DataError("is larger than 512 MiB", path=path, remedy="record more slowly")
+    lines = _lines(raw, path)
+    head = list(islice(lines, _PREAMBLE))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
-    header = read_header(head, path, mapping, example)
+    header = _read_header(head, path, example)
     layout, columns = find_columns(header.names, layouts, mapping, path, header.line, optional)
-    cells = _Cells(path, header.decimal_comma)
-    numbers = array("d")
+    cells, numbers = _Cells(path), array("d")
     for line, row in _rows(chain(head[header.line :], lines), header, path):
         numbers.extend([cells.number(c, row[c.index].strip(), line) for c in columns.values()])
     # Values beyond the floats are refused with the other sizes.
@@ -148,29 +149,77 @@ def _read(
             [[column.factor] for column in columns.values()]
         )
     values = dict(zip(columns, scaled, strict=True))
-    source = Source(path, hashed.hexdigest(), header.synthetic)
+    synthetic = any(text[:1] in _COMMENT and "synthetic" in text.lower() for text in head)
+    source = Source(path, hashlib.sha256(raw).hexdigest(), synthetic)
     return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header.line + 1)
 
 
-def _lines(file: BinaryIO, path: Path) -> Iterator[str]:
-    """Yield the lines of a text, so that it is never in memory at once."""
-    number = 0
-    while raw := file.readline(_LONGEST_LINE):
-        number += 1
-        if b"\0" in raw or (number == 1 and raw.startswith((b"%PDF", b"PK\3\4", b"\x1f\x8b"))):
+@dataclass(frozen=True, slots=True)
+class _Header:
+    """How a text file is to be read."""
+
+    names: list[str]  # Names of the columns
+    separator: str  # Between cells; a blank for any number of them
+    line: int  # Line of the names
+
+
+def _read_header(lines: Sequence[str], path: Path, example: str) -> _Header:
+    """Take the first line that is no comment, or the comment right above bare numbers."""
+    at = next((at for at, text in enumerate(lines) if text and text[0] not in _COMMENT), None)
+    if at is None:
+        raise DataError("has no header line", path=path, remedy="name the columns in a line")
+    if _decimal(_split(lines[at], _separator(lines[at]), path, at + 1)[0]) is not None:
+        if at == 0 or not lines[at - 1]:
             raise DataError(
-                "is no text in UTF-8", path=path, line=number, remedy="save its columns as CSV"
+                "begins with numbers, not with the names of its columns",
+                path=path,
+                line=at + 1,
+                remedy=f"add a header such as {example}",
             )
-        if len(raw) == _LONGEST_LINE:
-            raise DataError("has a line of over 1 MiB", path=path, remedy="save it as CSV")
-        try:
-            yield raw.decode("utf-8-sig" if number == 1 else "utf-8").strip("\r\n ")
-        except UnicodeDecodeError:
-            # Measuring software on Windows writes µ and ° in this way.
-            yield raw.decode("cp1252", "replace").strip("\r\n ")
+        at -= 1
+    text = lines[at].lstrip(f"{_COMMENT} ")
+    return _Header(_split(text, _separator(text), path, at + 1), _separator(text), at + 1)
 
 
-def _rows(lines: Iterable[str], header: Header, path: Path) -> Iterator[tuple[int, list[str]]]:
+def _separator(text: str) -> str:
+    """Return the most frequent separator of a line; blanks, which names may hold, come last."""
+    return max(",;\t", key=text.count) if set(text) & set(",;\t") else " "
+
+
+def _split(text: str, separator: str, path: Path, line: int) -> list[str]:
+    try:
+        row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [""])
+    except csv.Error as error:
+        raise DataError(
+            f"the line is no CSV ({error})", path=path, line=line, remedy="save the file as CSV"
+        ) from None
+    return [cell.strip() for cell in row]
+
+
+def _decimal(text: str) -> float | None:
+    """Return the number that a cell is; None for other text, such as ``1_0``."""
+    try:
+        return float(text) if "_" not in text and text.isascii() else None
+    except ValueError:
+        return None
+
+
+def _lines(raw: bytes, path: Path) -> Iterator[str]:
+    """Yield the lines of a text."""
+    if b"\0" in raw:
+        line = raw.count(b"\n", 0, raw.index(b"\0")) + 1
+        raise DataError(
+            "is no text in UTF-8", path=path, line=line, remedy="save its columns as CSV"
+        )
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        # Measuring software on Windows writes µ and ° in this way.
+        text = raw.decode("cp1252", "replace")
+    return (line.strip("\r\n ") for line in StringIO(text))
+
+
+def _rows(lines: Iterable[str], header: _Header, path: Path) -> Iterator[tuple[int, list[str]]]:
     """Yield line number and cells of each row; every row has as many cells as the header."""
     width, empty = len(header.names), 0
     for line, text in enumerate(lines, header.line + 1):
@@ -183,16 +232,13 @@ def _rows(lines: Iterable[str], header: Header, path: Path) -> Iterator[tuple[in
             raise DataError(
                 f"has more than {MAX_ROWS} rows", path=path, remedy="record more slowly"
             )
-        cells = header.cells(text) if '"' in text else text.split(header.separator)
+        cells = _split(text, header.separator, path, line)
         if len(cells) != width:
-            remedy = "complete the row, or end the record before it"
-            if header.separator == "," and len(cells) > width:
-                remedy = "write numbers with a decimal point, or separate them by semicolons"
             raise DataError(
                 f"the row has {len(cells)} values, the header {width}",
                 path=path,
                 line=line,
-                remedy=remedy,
+                remedy="complete the row; write numbers with a decimal point, not a comma",
             )
         yield line, cells
 
@@ -202,27 +248,19 @@ class _Cells:
     """Turns cells into numbers."""
 
     path: Path  # For errors
-    decimal_comma: bool = False
     # Words of a column of modes, numbered in the order of their first use.
     labels: dict[str, float] = field(default_factory=dict)
 
     def number(self, column: Column, cell: str, line: int) -> float:
         """Return the number in a cell, or that of its word in a column of modes."""
-        if column.unit and not (self.decimal_comma and "." in cell):
-            number = read_decimal(cell.replace(",", ".") if self.decimal_comma else cell)
-            if number is not None:
-                return number
+        if column.unit and (number := _decimal(cell)) is not None:
+            return number
         word = cell.strip(' "')
         if column.unit == "" and word and (word in self.labels or len(self.labels) < MAX_LABELS):
             return self.labels.setdefault(word, float(len(self.labels)))
-        fault, remedy = f"is {quoted(cell)}, not a number", "write decimal numbers"
+        fault, remedy = f"is {quoted(cell)}, not a number", "write it with a decimal point"
         if not word:
             fault, remedy = "is missing", "end the record before it, or fill the gap"
         elif column.unit == "":
             fault, remedy = f"has more than {MAX_LABELS} words", "map another column"
-        elif self.decimal_comma and read_decimal(cell) is not None:
-            # A point next to decimal commas may separate thousands.
-            fault, remedy = f"is {cell} where others have a decimal comma", UNDECIDED
-        elif "," in cell and read_decimal(cell.replace(",", "")) is not None:
-            remedy = UNDECIDED
         raise DataError(f"{column.name} {fault}", path=self.path, line=line, remedy=remedy)

@@ -6,16 +6,33 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.numeric import Array
+from nrs_design.identification.datasets.records import doubt_step
+from nrs_design.identification.numeric import Array, column_sizes
 from nrs_design.identification.rounding import rounding_of_velocity
-from nrs_design.identification.statistics import Uncertainty, student_quantile
-from nrs_design.identification.tissue.residuals import doubt_residuals, doubt_signs
+from nrs_design.identification.statistics import (
+    WHITE,
+    Uncertainty,
+    ljung_box,
+    student_quantile,
+)
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
 from nrs_design.spec.plausible import doubt_size
 
+# Largest residual, and largest structure in it, as parts of the range of the force.
+LARGEST_RESIDUAL = 0.1
+LARGEST_STRUCTURE = 0.03
+LEAST_R2 = 0.9
+# A cycle that is stiffer than the others by this much is conditioning.
+_CONDITIONING = 0.05
+_BINS = 12
+_SPREADS = 3.0
+_NOT_LINEAR = "follow the deflection: the tissue is not linear in it"
+_OTHERWISE_DAMPED = "follow the velocity: the law has another damping"
+_WANDERING = "are not white but wander with time"
+# Decrease of BIC by a tare that moves.
+_BIC = 10.0
 LARGEST_ERROR = 0.5
 # Distance from a bound, in the logarithm, that counts as reaching it.
 _BOUND_DISTANCE = 1e-3
@@ -38,12 +55,15 @@ def doubts(
 
     Bounds are the logarithms, lower and upper, between which the parameters were sought.
     """
-    wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
+    wrong = (*_units(trial), *_signs(trial, residuals))
     # A record in wrong units makes the sizes of its parameters meaningless.
     read = wrong or tuple(_sizes(law, rotational=trial.record.rotational))
     return (
         *read,
-        *doubt_residuals(trial, residuals, sensitivities),
+        *_size(trial, residuals),
+        *_structure(trial, residuals),
+        *_drift(trial, residuals, sensitivities),
+        *_conditioning(trial, residuals),
         *_bounds(law, bounds),
         *_errors(law, uncertainty),
         *_times(law, trial),
@@ -131,4 +151,130 @@ def _motion(law: AbstractContactLaw, trial: Trial, uncertainty: Uncertainty) -> 
     if law.relaxation_time is not None and start > _LOADED:
         yield (
             f"the record begins at {100 * start:.0f} % of the deflection, which is taken as relaxed"
+        )
+
+
+def _explained(trial: Trial, residuals: Array) -> float:
+    """Return R², the part of the variance of the force that a fit explains."""
+    total = float(np.var(trial.measured))
+    return 1 - float(np.mean(residuals**2)) / total if total else 0.0
+
+
+def structure(values: Array, residuals: Array) -> tuple[float, float]:
+    """Tell how residuals follow a quantity, by their means in groups of equal size.
+
+    Return the root mean square of what they follow, in N (N m), and the p-value of the F-test of
+    one-way analysis of variance.
+    """
+    from scipy.special import fdtrc
+
+    order = np.argsort(values, kind="stable")
+    groups = np.array_split(residuals[order], _BINS)
+    means = np.array([group.mean() for group in groups])
+    sizes = np.array([len(group) for group in groups])
+    within = sum(float(np.sum((g - m) ** 2)) for g, m in zip(groups, means, strict=True))
+    within /= len(residuals) - _BINS
+    between = float(sizes @ (means - residuals.mean()) ** 2) / (_BINS - 1)
+    if within == 0.0:
+        return 0.0, 1.0
+    follows = max(0.0, (between - within) * (_BINS - 1) / len(residuals))
+    return follows**0.5, float(fdtrc(_BINS - 1, len(residuals) - _BINS, between / within))
+
+
+def _signs(trial: Trial, residuals: Array) -> Iterator[str]:
+    """Doubt the sign of the force, unless a law, which pushes back, explains it well."""
+    if _explained(trial, residuals) < LEAST_R2 and not _takes_work(trial):
+        yield (
+            "force and deflection have opposite signs: the tissue gives back more work than it "
+            "takes (--set negate=true if the sensor measures the force on the probe)"
+        )
+
+
+def _takes_work(trial: Trial) -> bool:
+    """Tell whether the probe works on the tissue; with a wrong sign, it is worked on.
+
+    Forces count from the first one: no passive tissue gives back more than it has taken.
+    """
+    x, force = trial.deflection, trial.measured
+    added = (force[1:] + force[:-1]) / 2 - force[0]
+    work = np.cumsum(added * np.diff(x))
+    return float(work.max()) >= -float(work.min())
+
+
+def _size(trial: Trial, residuals: Array) -> Iterator[str]:
+    part = float(np.sqrt(np.mean(residuals**2))) / trial.span
+    r2 = _explained(trial, residuals)
+    if part > LARGEST_RESIDUAL or r2 < LEAST_R2:
+        yield f"the residual is {100 * part:.2g} % of the range of the force (R² = {r2:.2g})"
+
+
+def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
+    touching = trial.touching[trial.used]
+    inside = residuals[touching]
+    motion, span = trial.motion, trial.span
+    velocity = motion.velocity[trial.used][touching]
+    wander, _ = structure(motion.time[trial.used], residuals)
+    for (size, p), test, what in (
+        (structure(trial.deflection[touching], inside), "F-test", _NOT_LINEAR),
+        (structure(velocity, inside), "F-test", _OTHERWISE_DAMPED),
+        ((wander, ljung_box(residuals)), "Ljung-Box", _WANDERING),
+    ):
+        if size > LARGEST_STRUCTURE * span and p < WHITE:
+            # A p-value that leaves the floats is not 0.
+            p_text = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
+            part = f"{100 * size / span:.2g} % of the range of the force, {test} {p_text}"
+            yield f"the residuals {what} ({part})"
+
+
+def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
+    """Doubt a tare that moves, straight or bent, where no air was asked."""
+    if trial.contact is not None:
+        return
+    time = trial.motion.time[trial.used]
+    part = (time - time[0]) / (time[-1] - time[0])
+    gain = _gain(residuals, sensitivities, np.column_stack([part, part**2]))
+    if gain > _BIC:
+        yield (
+            f"a tare that moves with time fits better (BIC {gain:.3g} less), and no air shows "
+            "whether it does: record air before and after"
+        )
+
+
+def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
+    """Return the decrease of BIC by more columns, shape (n, q), in a linearized fit."""
+    n = len(residuals)
+    X = np.column_stack([sensitivities, columns])
+    size = column_sizes(X)
+    found, _, rank, _ = np.linalg.lstsq(X / size, residuals, rcond=1e-9)
+    left = residuals - (X / size) @ found
+    difference = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])
+    if difference < 1 or not (left @ left):
+        return 0.0
+    fall = float(np.log((residuals @ residuals) / (left @ left)))
+    gain = n * fall - float(difference) * float(np.log(n))
+    # Colored residuals hold fewer samples than they count.
+    return gain * (1.0 if ljung_box(left) >= WHITE else _BINS / n * 2)
+
+
+def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
+    """Compare the first loading cycle with the later ones (Mullins effect)."""
+    rest, fitted = np.full(len(trial.force), np.nan), np.full(len(trial.force), np.nan)
+    rest[trial.used] = residuals
+    fitted[trial.used] = trial.measured - residuals - (trial.measured - residuals).min()
+    gains = []
+    for cycle in trial.cycles:
+        inside = np.isfinite(rest[cycle])
+        f = fitted[cycle][inside]
+        if inside.sum() >= _BINS and np.ptp(f) > 0.5 * trial.span:
+            gains.append(float(f @ rest[cycle][inside]) / float(f @ f))
+    if len(gains) < 3:
+        return
+    first, later = gains[0], np.array(gains[1:])
+    difference = first - float(later.mean())
+    if abs(difference) > max(_CONDITIONING, _SPREADS * float(np.ptp(later))):
+        word = "stiffer" if difference > 0 else "softer"
+        start = trial.motion.time[trial.cycles[1].start]
+        yield (
+            f"the first loading cycle is {100 * abs(difference):.2g} % {word} than the later ones "
+            f"(conditioning): --set start={start:.4g} sets it apart"
         )

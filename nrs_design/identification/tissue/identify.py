@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
-from nrs_design.identification.statistics import check_spread
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
@@ -34,8 +33,8 @@ class TissueIdentification:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """None about all records: each trial has its own."""
-        return ()
+        """Pauses in the records, in words."""
+        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -83,8 +82,12 @@ def identify_tissue(
     `DataError` before anything is fitted. `declared`: the law is that of a spec, not the user's.
     """
     _check(records)
-    if coverage != "confidence":
-        check_spread(coverage, len(records))
+    if coverage != "confidence" and len(records) < 2:
+        raise DataError(
+            f"a range for {coverage} needs several records, and there is one: it says nothing of "
+            "the spread between specimens",
+            remedy="give more records, or take --covers confidence",
+        )
     trials = [prepare(record, preparation) for record in records]
     if preload is not None:
         check_preload(HuntCrossley if law is None else LAWS[law], trials, preload)

@@ -20,7 +20,7 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 from nrs_design.identification.tissue.doubts import doubts, reaches_zero
-from nrs_design.identification.tissue.offsets import Offset, estimate_offsets
+from nrs_design.identification.tissue.offsets import place_offsets
 from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point, box
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
@@ -40,7 +40,7 @@ class RecordFit:
 
     trial: Trial  # The prepared data
     law: AbstractContactLaw  # With the fitted parameters
-    offsets: tuple[Offset, ...]  # Position of contact, tare and drift
+    offsets: dict[str, float]  # Position of contact, tare and drift, as far as they show
     fitted: Array  # Shape (n,). Force of law and offsets in all samples of the trial.
     uncertainty: Uncertainty  # For the logarithms of the parameters
     rmse: float  # Root of the mean squared force error, in N (N m)
@@ -109,10 +109,9 @@ def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     residuals = point.residuals
     J = np.column_stack([point.sensitivities, point.constants])
     known = _uncertainty(trial, J, residuals)
-    placed = _uncertainty(trial, J, residuals, returns=True)
     p = len(law.values)
     shift = point.shift if len(point.values) > p else None
-    offsets = estimate_offsets(law, trial, names, point.best[: len(names)], shift, placed)
+    fitted = dict(zip(names, point.best.tolist(), strict=False))
     law_uncertainty = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
     texts = list(doubts(law, trial, law_uncertainty, bounds, residuals, J))
     if shift is not None and abs(point.values[p]) > _ZERO_RANGE * (1 - 1e-3):
@@ -120,7 +119,7 @@ def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     return RecordFit(
         trial=trial,
         law=law,
-        offsets=offsets,
+        offsets=place_offsets(law, trial, fitted, shift),
         fitted=point.whole_force,
         uncertainty=law_uncertainty,
         rmse=float(np.sqrt(np.mean(residuals**2))),
@@ -129,11 +128,11 @@ def _judge(point: Point, bounds: tuple[Array, Array]) -> RecordFit:
     )
 
 
-def _uncertainty(trial: Trial, J: Array, residuals: Array, *, returns: bool = False) -> Uncertainty:
+def _uncertainty(trial: Trial, J: Array, residuals: Array) -> Uncertainty:
     deflection = trial.deflection
     moving = np.linalg.norm(deflection - deflection.mean())
     stiffness = float(np.linalg.norm(trial.measured - trial.measured.mean()) / moving)
-    scatter = rounding_scatter(deflection, J, stiffness, returns=returns)
+    scatter = rounding_scatter(deflection, J, stiffness)
     return uncertainty(J, residuals, scatter=scatter)
 
 

@@ -109,12 +109,6 @@ class LeastSquaresProblem:
         return self.trial.unrested if remembers else ()
 
     @cached_property
-    def force(self) -> Array:
-        """Measured force, less a tare that is given, shape (n,)."""
-        tare = self.trial.preparation.tare or 0.0
-        return self.trial.measured - self.trial.side * tare
-
-    @cached_property
     def travel(self) -> float:
         """Range of the deflection, m (rad)."""
         return float(np.ptp(self.trial.motion.deflection))
@@ -122,8 +116,7 @@ class LeastSquaresProblem:
     @property
     def no_shift(self) -> Array:
         """The move of the zero at a start, a number if it is fitted and enters nonlinearly."""
-        moves = self.trial.preparation.zero is None and not issubclass(self.kind, AbstractLinearLaw)
-        return np.zeros(int(moves))
+        return np.zeros(int(not issubclass(self.kind, AbstractLinearLaw)))
 
     def starts(self) -> Iterator[Point]:
         """Yield points to start from, with the position of contact here and there."""
@@ -222,7 +215,7 @@ class Point:
 
     @cached_property
     def _error(self) -> Array:
-        return self.problem.force - self.force
+        return self.problem.trial.measured - self.force
 
     @cached_property
     def best(self) -> Array:
@@ -266,7 +259,7 @@ class Point:
         """Return the derivatives of the initial states, which decay at the rate of the law."""
         problem, tau = self.problem, self.law.relaxation_time
         if not tau:
-            return np.zeros((len(problem.force), len(self.values)))
+            return np.zeros((len(self.force), len(self.values)))
         # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
         grows = (
             problem.ages[problem.trial.used]
@@ -280,10 +273,7 @@ class Point:
     @property
     def whole_force(self) -> Array:
         """The force in all samples, used or not, with its tare."""
-        problem = self.problem
-        trial = problem.trial
-        offsets = offset_columns(problem.names, trial)
+        offsets = offset_columns(self.problem.names, self.problem.trial)
         # Stretches without a used sample have no state of their own.
         constants = np.column_stack([offsets, self._fading])
-        force = self._pushing(self.law.simulate(self.motion)) + constants @ self.best
-        return force + trial.side * (trial.preparation.tare or 0.0)
+        return self._pushing(self.law.simulate(self.motion)) + constants @ self.best

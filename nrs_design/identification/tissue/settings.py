@@ -8,7 +8,7 @@ from math import isfinite
 from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.tissue.trial import Preparation
 from nrs_design.named_values import read_named_values
-from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
+from nrs_design.spec.kinds import ANGLE, LENGTH, LEVER_ARM
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 # In m; longer arms were meant in mm.
@@ -51,27 +51,18 @@ def _parse(option: str, text: str, kind: QuantityKind) -> float:
         raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None
 
 
-def read_preparation(entries: Iterable[str], *, rotational: bool) -> Preparation:
+def read_preparation(entries: Iterable[str]) -> Preparation:
     """Read how records are prepared; the settings are the fields of `Preparation`.
 
-    ``start=S``, ``end=S``, ``contact=auto|given``, ``zero=POSITION``, ``tare=FORCE``,
-    ``drift=auto|fit|none``, ``negate=true``.
+    ``start=S``, ``end=S``, ``contact=auto|given``, ``negate=true``.
     """
     readers: dict[str, Callable[[str], object]] = {
         "start": _seconds,
         "end": _seconds,
         "contact": _out_of("auto", "given"),
-        "zero": _offset("zero", (LENGTH, ANGLE)[rotational]),
-        "tare": _offset("tare", (FORCE, TORQUE)[rotational]),
-        "drift": _out_of("auto", "fit", "none"),
         "negate": lambda text: _out_of("true", "false")(text) == "true",
     }
     return Preparation(**read_named_values(entries, readers, "a record"))
-
-
-def _offset(name: str, kind: QuantityKind) -> Callable[[str], float | None]:
-    """Return a reader of an offset in SI; ``fit`` is None."""
-    return lambda text: None if text == "fit" else _parse(name, text, kind)
 
 
 def _seconds(text: str) -> float:

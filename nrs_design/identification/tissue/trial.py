@@ -8,9 +8,8 @@ from typing import Literal
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import find_stretches, long_stretches, pauses_text
 from nrs_design.identification.datasets.records import TissueRecord
-from nrs_design.identification.numeric import Array, Flags, Rows, parted
+from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import (
     DetectedContact,
@@ -44,10 +43,6 @@ class Preparation:
     end: float | None = None
     # Detect air, or treat the whole record as in contact.
     contact: Literal["auto", "given"] = "auto"
-    zero: float | None = None  # Position of contact in m (rad); None fits it
-    tare: float | None = None  # Force in air in N (N m); None fits it
-    # Fit a tare that drifts in proportion to time; ``auto``: if the air shows it.
-    drift: Literal["auto", "fit", "none"] = "auto"
     negate: bool = False  # Change the sign of the force
 
 
@@ -68,25 +63,19 @@ class Trial:
     drift: bool  # Whether the tare is fitted as moving
     cuts: tuple[str, ...]  # Unused parts and reasons, in words
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
-    stretch: Rows  # Shape (n,). Counts up at every pause of the record.
 
     @property
     def unrested(self) -> tuple[slice, ...]:
         """Stretches in contact that may not begin at rest: touches, a loaded or a cut start.
 
         A touch begins where the position of contact is, which is known with an error; what was
-        before ``start``, or during a pause of the record, no sample tells.
+        before ``start``, or before a pause, no sample tells.
         """
-        parts = np.where(self.touching, self.stretch, -1)
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
-        whole = self.contact is None and self.stretch[-1] == self.stretch[0]
-        if whole and not loaded and not self.preparation.start:
+        cut = self.preparation.start or self.record.pauses
+        if self.contact is None and not loaded and not cut:
             return ()
-        return tuple(
-            slice(a, b)
-            for a, b in parted(np.diff(parts) != 0)
-            if self.touching[a] and self.used[a:b].any()
-        )
+        return tuple(slice(a, b) for a, b in runs(self.touching) if self.used[a:b].any())
 
     @property
     def measured(self) -> Array:
@@ -127,8 +116,6 @@ class Trial:
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
                 "would pass for relaxation"
             )
-        if pauses := pauses_text(self.record.motion.time):
-            texts.append(pauses)
         if self.drift:
             texts.append("the tare is fitted as moving in proportion to time")
         return (*texts, *self.cuts)
@@ -140,14 +127,14 @@ class Trial:
             return self
         pick = slice(None, None, every)
         motion = Motion(self.motion.time[pick], self.motion.deflection[pick])
-        names = ("position", "force", "used", "touching", "stretch")
+        names = ("position", "force", "used", "touching")
         return replace(self, motion=motion, **{name: getattr(self, name)[pick] for name in names})
 
 
 def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Trial:
     """Cut a record to what can be fitted; too little left is a `DataError`.
 
-    By default, air and drift are looked for, and both zeros are fitted.
+    Air and drift are looked for by default, and the zeros of force and deflection are fitted.
     """
     settings = preparation or Preparation()
     kept, cuts = _window(record, settings)
@@ -155,14 +142,12 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
     x, time = kept.motion.deflection, kept.motion.time
     side = _side(x) if contact is None else contact.side
     reference = side * float(np.min(side * x)) if contact is None else contact.zero
-    if settings.zero is not None:
-        reference = settings.zero
     deflection = position = side * (x - reference)
     used = touching = np.ones(len(x), bool)
     if contact is not None:
         width = _EDGE * float(np.ptp(x))
         deflection, touching = surface(time, position, contact.touches, width)
-        edge = _edge(position, width, settings, contact)
+        edge = _edge(position, width, contact)
         edge |= touching & ~inner(touching)
         free = contact.beyond & ~touching & ~edge
         cuts += _unused_text(time, edge, "at the edge of contact")
@@ -170,21 +155,16 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
             time, free, "no contact yet: the tissue has not come back from a touch"
         )
         used = ~edge & ~free
-    stretch, excluded = _pauses(time)
-    cuts += _unused_text(time, excluded, "beside a pause of the record, or between two of them")
-    used = used & ~excluded
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
             path=record.source.path,
             remedy="record longer, or say by --set contact=given, start=S or end=S what to use",
         )
-    drift = settings.drift == "fit"
-    if settings.drift == "auto":
-        drift = _shows_drift(time, used & ~touching)
+    drift = _shows_drift(time, used & ~touching)
     return Trial(
         record, settings, Motion(time, deflection), position, side * kept.force, used, touching,
-        reference, side, contact, drift, tuple(cuts), find_cycles(deflection), stretch,
+        reference, side, contact, drift, tuple(cuts), find_cycles(deflection),
     )  # fmt: skip
 
 
@@ -202,32 +182,14 @@ def _shows_drift(time: Array, air: Flags) -> bool:
     return bool(np.diff(rows).max() >= _LEAST_CONTACT)
 
 
-def _pauses(time: Array) -> tuple[Rows, Flags]:
-    """Return numbers of the stretches between pauses, and the samples that are not used for them.
-
-    These are the last one before a pause and the first one after it, whose velocity is none, and
-    stretches that are too short.
-    """
-    stretch = np.zeros(len(time), np.int64)
-    excluded = np.zeros(len(time), bool)
-    kept, every = long_stretches(time), find_stretches(time)
-    for number, rows in enumerate(every):
-        stretch[rows] = number
-        excluded[rows] = rows not in kept
-        excluded[rows.start] |= number > 0
-        excluded[rows.stop - 1] |= number < len(every) - 1
-    return stretch, excluded
-
-
-def _edge(position: Array, width: float, settings: Preparation, contact: DetectedContact) -> Flags:
+def _edge(position: Array, width: float, contact: DetectedContact) -> Flags:
     """Find samples that may be in air or not.
 
-    They are where the position of contact may lie by the noise, unless it is given, and a width
-    beyond: its curve is none of the laws.
+    They are where the position of contact may lie by the noise, and a width beyond: its curve is
+    none of the laws.
     """
-    low, high = contact.ends if settings.zero is None else (0.0, 0.0)
-    count = _FARTHEST * float(np.ptp(position))
-    low, high = max(low, -count) - width, min(high, count) + width
+    far = _FARTHEST * float(np.ptp(position))
+    low, high = max(contact.ends[0], -far) - width, min(contact.ends[1], far) + width
     return np.asarray((position > low) & (position < high))
 
 

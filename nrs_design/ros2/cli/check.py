@@ -15,13 +15,19 @@ from nrs_design.cli.gate import GateFormat, format_of
 from nrs_design.cli.options import read_work
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_text
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.ros2.cli.options import Lag, range_of, read_lag
-from nrs_design.ros2.quantities import RATE, RATE_UNITS, ROTATIONAL, STIFFNESS
+from nrs_design.ros2.quantities import LAG, RATE, RATE_UNITS, ROTATIONAL, STIFFNESS, Range
+from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome
 
 LONGEST_AGE = 20
+Lag = Annotated[
+    str,
+    typer.Option(
+        metavar="RANGE", help="Time constant with which the robot follows, such as '5..20 ms'."
+    ),
+]
 
 
 @command("ros2-check")
@@ -63,8 +69,7 @@ def check(
 
     The law of admittance_controller (ros2_controllers) is taken as an exact difference equation at
     the rate of the loop, with its force filter, for every stiffness in the range and every age of
-    the measurement, changing at will. Where there is no proof, it says up to which stiffness there
-    is one; and it warns of parameters that do not do what they seem to.
+    the measurement, changing at will. It warns of parameters that do not do what they seem to.
 
     Exit code 0: all axes proved. 1: one refuted. 2: a parameter of the law is missing or
     wrong. 3: undecided; so is any other controller of the file that may move the robot.
@@ -140,3 +145,26 @@ def _rate(text: str) -> Fraction:
     if rate <= 0:
         raise NrsDesignError("--rate: is not positive", remedy=f"write {RATE}")
     return rate
+
+
+def read_lag(text: str) -> Range:
+    """Return the ends of a range of time constants in s."""
+    return range_of("--lag", text, LAG) or (Fraction(0), Fraction(0))
+
+
+def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
+    """Read one quantity, or two with ``..`` between them; None where there is no text."""
+    if text is None:
+        return None
+    remedy = f"write {option} '{kind.example}'"
+    numbers, _, unit = text.partition(" ")
+    low, _, high = numbers.partition("..")
+    try:
+        ends = [parse_quantity(f"{n} {unit}".strip(), kind).exact for n in (low, high or low)]
+    except SpecError as error:
+        raise NrsDesignError(f"{option}: {error.message}", remedy=remedy) from None
+    if not 0 <= ends[0] <= ends[1]:
+        raise NrsDesignError(
+            f"{option}: {text!r} is not a rising range from zero or above", remedy=remedy
+        )
+    return ends[0], ends[1]

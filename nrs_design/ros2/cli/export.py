@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -12,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
-from nrs_design.ros2.cli.options import Lag, read_lag
+from nrs_design.ros2.cli.check import Lag, read_lag
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,15 +21,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
 
-class RosAxis(StrEnum):
-    """Directions and rotations of the control frame."""
-
-    X = "x"
-    Y = "y"
-    Z = "z"
-    RX = "rx"
-    RY = "ry"
-    RZ = "rz"
+RosAxis = Literal["x", "y", "z", "rx", "ry", "rz"]
 
 
 @command("ros2-export")
@@ -106,7 +97,7 @@ def _axes_of(spec: Path, axis: RosAxis | None) -> dict[str, LoadedSpec]:
         raise typer.BadParameter("name the axis that the spec is of", param_hint="--axis")
     if axis is not None and loaded[0].path != spec:
         raise typer.BadParameter("the file names its axes itself", param_hint="--axis")
-    names = [str(axis)] if axis else [str(item.path).rpartition("#")[2] for item in loaded]
+    names = [axis] if axis else [str(item.path).rpartition("#")[2] for item in loaded]
     for name, item in zip(names, loaded, strict=True):
         kind = "prismatic" if name in AXES[:3] else "rotary"
         if name not in AXES or getattr(item.spec, "axis", kind) != kind:

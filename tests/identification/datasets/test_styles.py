@@ -1,7 +1,5 @@
 """Files as other programs write them: read without help, or with `--map`."""
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -15,70 +13,33 @@ DEFLECTION = 0.005 * (1 - np.cos(9 * TIME))
 FORCE = 750 * DEFLECTION
 
 
-def rows(separator, decimal=".", scales=(1.0, 1.0, 1.0)):
+def rows(separator, scales=(1.0, 1.0, 1.0)):
     lines = (
         separator.join(f"{value * scale:.6f}" for value, scale in zip(row, scales, strict=True))
         for row in zip(TIME, DEFLECTION, FORCE, strict=True)
     )
-    return "\n".join(lines).replace(".", decimal) + "\n"
+    return "\n".join(lines) + "\n"
 
 
-INSTRON = (
-    'Specimen label,"Pork, belly"\nRate,"1,000",mm/min\n\nTime,Extension,Load\n(s),(mm),(kN)\n'
-    + rows(",", scales=(1, 1e3, 1e-3))
-)
-LABVIEW = "LabVIEW Measurement\nSeparator\tTab\n***End_of_Header***\n" + (
-    "Time [ms]\tDeflection [mm]\tForce [mN]\n" + rows("\t", ",", (1e3, 1e3, 1e3))
-)
-GERMAN = "sep=;\nTime (s);Deflection (mm);Force (N)\n" + rows(";", ",", (1, 1e3, 1))
 ROS = "%time,/tool.pose.z,/ft_sensor.wrench.force.z\n" + "".join(
     f"{1_700_000_000_000_000_000 + int(t * 1e9)},{d:.6f},{f:.6f}\n"
     for t, d, f in zip(TIME, DEFLECTION, FORCE, strict=True)
 )
 FROM_ROS = ["time_ns=time", "deflection_m=/tool.pose.z", "force_N=/ft_sensor.wrench.force.z"]
-
-SLASHES = "Time/s;Indentation/mm;Force/gf\n" + rows(";", ".", (1, 1e3, 1e3 / 9.80665))
-# As tables of a testing machine for tissue have it: tabs between, and a comma before the unit.
-COMMAS = "<INFO>\nVelocity, mm/s:\t0.1\n<DATA>\nTime, s\tIndentation, mm\tForce, gf\n" + (
-    rows("\t", ".", (1, 1e3, 1e3 / 9.80665))
+GERMAN = "Zeit;Weg (mm);Kraft\n" + rows(";", (1, 1e3, 1))
+FROM_GERMAN = ["time_s=Zeit", "deflection_mm=Weg (mm)", "force_N=Kraft"]
+QUOTED = '"Time (s)","Deflection (mm)","Force (N)"\n"' + (
+    rows('","', (1, 1e3, 1)).strip().replace("\n", '"\n"') + '"\n'
 )
-# An indenter: bytes of Windows for µ, and an empty line between the names and the rows.
-SMALL = "Indentation\n\nTime :8:00:16 AM\n\nTime (s)\tPd (µm)\tFn (µN)\n\n" + (
-    rows("\t", ".", (1, 1e6, 1e6))
-)
-FROM_SMALL = ["deflection_um=Pd (µm)", "force_uN=Fn (µN)"]
-MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", ".", (1, 1e6, 1 / 9.80665))
-FOREIGN = "t;x;F\ns;mm;N\n" + rows(";", ",", (1, 1e3, 1))
-FROM_FOREIGN = ["time_s=t", "deflection_mm=x", "force_N=F"]
-
-# A table that was saved with all cells as text.
-QUOTED = '"Time (s)","Deflection (mm)","Force (N)"\n' + "".join(
-    ",".join(f'"{value:.6f}"'.replace(".", ",") for value in (t, 1e3 * d, f)) + "\n"
-    for t, d, f in zip(TIME, DEFLECTION, FORCE, strict=True)
-)
-POINTS = QUOTED.replace('","', "|").replace(",", ".").replace("|", '","')
-
+MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", (1, 1e6, 1 / 9.80665))
 STYLES = {
-    "decimal commas in quotes": (QUOTED, []),
-    "decimal points in quotes": (POINTS, []),
+    "all in quotes": (QUOTED, []),
     "commented header of NumPy": ("# time_s deflection_m force_N\n" + rows(" "), []),
     "tabs": ("time_s\tdeflection_m\tforce_N\n" + rows("\t"), []),
-    "semicolons and decimal commas": (GERMAN, []),
-    "a testing machine": (INSTRON, []),
-    "LabVIEW": (LABVIEW, []),
-    "grams and slashes": (SLASHES, []),
-    "a comma before the unit": (COMMAS, []),
+    "brackets": ("# a\nTime [ms], Deflection [µm], Force [kN]\n" + rows(",", (1e3, 1e6, 1e-3)), []),
+    "semicolons and foreign names": (GERMAN, FROM_GERMAN),
     "a bag": (ROS, FROM_ROS),
     "a byte order mark": (MARKED, []),
-    "foreign names above units": (FOREIGN, FROM_FOREIGN),
-    "an indenter": (SMALL, FROM_SMALL),
-    **{
-        f"{name}, with blanks, above commas": (
-            f"{name} [ms], Deflection [mm], Force [N]\n" + rows(",", ".", (1e3, 1e3, 1)),
-            [],
-        )
-        for name in ("% Time", "%Back-end Time")
-    },
 }
 
 
@@ -98,29 +59,9 @@ def test_text(tmp_path, style):
 
 def test_micro_sign_of_windows(tmp_path):
     path = tmp_path / "record.csv"
-    text = "Time [s];Deflection [µm];Force [N]\n" + rows(";", ",", (1, 1e6, 1))
+    text = "Time [s];Deflection [µm];Force [N]\n" + rows(";", (1, 1e6, 1))
     path.write_bytes(text.encode("cp1252"))
     check(read_tissue(path))
-
-
-def test_rows_of_separators_above_the_names(tmp_path):
-    text = "Machine 7,,\n,,\nZeit,Weg,Kraft\n" + rows(",")
-    (tmp_path / "a.csv").write_text(text)
-    mapping = ["time_s=Zeit", "deflection_m=Weg", "force_N=Kraft"]
-    check(read_tissue(tmp_path / "a.csv", parse_mapping(mapping)))
-    with pytest.raises(DataError, match="are missing: it has Machine 7"):
-        read_tissue(tmp_path / "a.csv")
-
-
-def test_readers_are_silent(tmp_path):
-    """NumPy warns of a table without rows."""
-    path = tmp_path / "record.csv"
-    path.write_text("time_s,deflection_m,force_N\n")
-    with warnings.catch_warnings(record=True) as heard:
-        warnings.simplefilter("always")
-        with pytest.raises(DataError):
-            read_tissue(path)
-    assert heard == []
 
 
 @pytest.mark.parametrize(
@@ -128,46 +69,28 @@ def test_readers_are_silent(tmp_path):
     [
         ("velocity_rad_s", ("velocity", "rad_s")),
         ("angle_rad_2", ("angle", "rad_2")),
-        ("Speed (rpm)", ("velocity", "rpm")),
+        ("Velocity (rpm)", ("velocity", "rpm")),
         ("Torque [N·m]", ("torque", "Nm")),
         ("Angle [°]", ("angle", "deg")),
         ("Deflection [μm]", ("deflection", "um")),
         ("command_pwm", ("command", "counts")),
         ("Force", ("force", "")),
-        ("Load cell serial", None),
-        ("t [s]", ("time", "s")),
-        ("t_s", ("time", "s")),
         ("TIME_MS", ("time", "MS")),
-        ("F [kN]", ("force", "kN")),
-        ("Position (deg)", ("angle", "deg")),
-        ("Position (mm)", ("deflection", "mm")),
-        ("T [Nm]", ("torque", "Nm")),
-        *((text, None) for text in ("t [N]", "f_Hz", "s_m", "t", "Load", "Fz")),
+        *((text, None) for text in ("Load cell serial", "t [N]", "F [N]", "Load", "Fz")),
     ],
 )
 def test_names(text, name):
     assert read_name(text) == (name and Name(*name))
 
 
-@pytest.mark.parametrize(
-    "head",
-    ["t [s],x [mm],F [kN]", "time (s),Position (mm),force [kN]", "t/s,Displacement/mm,F/kN",
-     "Time_s,Deflection_mm,Force_kN", "Time [s],d [mm],Load [kN]", "t [s],deflection_mm,F [kN]"],
-)  # fmt: skip
-def test_symbols_with_a_unit(tmp_path, head):
-    path = tmp_path / "record.csv"
-    path.write_text(f"{head}\n{rows(',', '.', (1, 1e3, 1e-3))}")
-    check(read_tissue(path))
-
-
 def test_of_two_columns_of_a_quantity_the_user_chooses(tmp_path):
     path = tmp_path / "record.csv"
-    body = rows(",", ".", (1, 1e3, 1)).replace("\n", ",1\n")
-    path.write_text(f"t [s],z [mm],F [N],x [mm]\n{body}")
-    with pytest.raises(DataError, match=r"there twice \('z \[mm\]' and 'x \[mm\]'\)") as caught:
+    body = rows(",", (1, 1e3, 1)).replace("\n", ",1\n")
+    path.write_text(f"time_s,deflection_mm,force_N,Deflection [mm]\n{body}")
+    with pytest.raises(DataError, match="there twice") as caught:
         read_tissue(path)
     assert "--map deflection_m=NAME" in str(caught.value.remedy)
-    check(read_tissue(path, parse_mapping(["deflection_mm=z [mm]"])))
+    check(read_tissue(path, parse_mapping(["deflection_mm=deflection_mm"])))
 
 
 @pytest.mark.parametrize(
@@ -197,7 +120,6 @@ def test_what_is_mapped_decides_between_layouts(tmp_path):
 CONTRADICTIONS = {
     "force_N=Load_kN": "force_kN=Load_kN",
     "deflection_m=Weg [mm]": "deflection_mm=Weg [mm]",
-    "time_s=t/ms": "time_ms=t/ms",
     "command_rpm=voltage_V": "command_V=voltage_V",
     "velocity_rad_s=w_deg_s": "velocity_deg_s=w_deg_s",
     "angle_rad=Weg [mm]": "map another column",
@@ -216,18 +138,11 @@ def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
 
 @pytest.mark.parametrize(
     "entry",
-    ["force_N=F [N]", "torque_Nm=T (N*m)", "frequency_hz=f_Hz", "angle_rad=theta_m",
-     "command_V=sensor_A", "input_any=cmd_V", "force_N=Force (filtered)", "force_N=wrench/force"],
+    ["force_N=F [N]", "torque_Nm=T (N*m)", "angle_rad=theta_m", "command_V=sensor_A",
+     "input_any=cmd_V", "force_N=Force (filtered)"],
 )  # fmt: skip
 def test_a_name_that_does_not_contradict_is_mapped(entry):
     ours, _, theirs = entry.partition("=")
     quantity = read_name(ours).quantity
     layout, columns = find_columns([theirs], [(quantity,)], parse_mapping([entry]), "file", 1)
     assert (layout, columns[quantity].name) == ((quantity,), theirs)
-
-
-def test_a_line_of_units_contradicts_too(tmp_path):
-    path = tmp_path / "foreign.csv"
-    path.write_text(FOREIGN, "utf-8")
-    with pytest.raises(DataError, match="column 'x' says mm, and deflection_m is in m"):
-        read_tissue(path, parse_mapping(["time_s=t", "deflection_m=x", "force_N=F"]))

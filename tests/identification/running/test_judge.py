@@ -8,7 +8,6 @@ import pytest
 from nrs_design.errors import DataError, DesignError
 from nrs_design.identification.running.bounds import BoundStatus, bounds_of_spec, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
-from nrs_design.identification.running.log import read_run
 from nrs_design.spec import parse_spec, read_spec
 from tests.identification import runs
 from tests.identification.runs import SAMPLED, SOFT, check, judged, log
@@ -166,8 +165,13 @@ def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
     found = check(judged(log(tmp_path, following([1.3])), asked), "delay")
     assert (found.status, found.first) == ("not judged", None)
     assert "cannot be told apart" in found.measured
-    several = check(judged(log(tmp_path, following([1.3, 3.7, 7.1])), asked), "delay")
-    assert several.status == "inside"
+    told = following([1.3, 3.7, 7.1])
+    assert check(judged(log(tmp_path, told), asked), "delay").status == "inside"
+    # Beside a gap, the rows of the longest stretch say nothing of the others.
+    gap = np.r_[0:900, 950:5000]
+    parted = log(tmp_path, [column[gap] for column in told])
+    assert check(judged(parted, asked), "delay").status == "undecided"
+    assert check(judged(parted, replace(SOFT, delay=1e-4)), "delay").status == "outside"
 
 
 def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
@@ -214,11 +218,8 @@ def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
 
 @pytest.mark.parametrize("names", ["iw", "37"])
 def test_modes_have_names(tmp_path, names):
-    t, angle, torque, command, mode = runs.run(duration=6.0)
-    mode = np.where(mode == "insertion", *names)
-    path = tmp_path / "run.csv"
-    path.write_text(runs.text(t, angle, torque, command, mode))
-    log = read_run(path)
-    assert log.labels == tuple(names)
-    assert [log.labels[i] for i in log.modes] == mode.tolist()
-    assert log.command_unit == "rpm"
+    data = *_, mode = runs.run(duration=6.0)
+    mode[:] = np.where(mode == "insertion", *names)
+    found = log(tmp_path, data)
+    assert found.labels == tuple(names)
+    assert [found.labels[i] for i in found.modes] == mode.tolist()

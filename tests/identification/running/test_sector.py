@@ -142,9 +142,6 @@ def test_without_bounds_or_columns_the_stiffness_is_not_judged(tmp_path):
     found = judged(tmp_path, runs.run(), unknown)
     assert str(check(found, "stiffness").status) == "not judged"
     assert found.judged is None
-    # Six standard deviations of 0.5 mN m, and what it is written with: 1e-7 rad.
-    assert "`torque_noise: 0.003 N*m, angle_noise: 2e-07 rad`" in found.hint
-    assert judged(tmp_path, pressed(), bounds()).hint == ""
     record = log(tmp_path, runs.run())
     columns = {key: values for key, values in record.columns.items() if key != "torque"}
     (unseen,), share = judge_sector(replace(record, columns=columns), bounds())

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.doubts import structure
 from nrs_design.identification.tissue.output_error import fit_record
-from nrs_design.identification.tissue.residuals import structure
 from nrs_design.models.contact import LAWS, Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification.support import quick, record, slow, source
 
@@ -50,10 +50,6 @@ def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
     data = record(Maxwell(400.0, 8000.0), motion, 0.01, 1)
     for kind in LAWS.values():
         assert "opposite signs" not in "; ".join(fit_record(kind, data).doubts)
-    turned = replace(data, force=-data.force)
-    assert "opposite signs" not in "; ".join(fit_record(Maxwell, data).doubts)
-    assert "% of the range of the force" in "; ".join(fit_record(Maxwell, turned).doubts)
-    assert "opposite signs" in "; ".join(fit_record(Maxwell, turned).doubts)
     pulled = replace(record(Elastic(400.0), quick(1), 0.02, 1), force=-400.0 * quick(1).deflection)
     for kind in LAWS.values():
         assert "opposite signs" in "; ".join(fit_record(kind, pulled).doubts)

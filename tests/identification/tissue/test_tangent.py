@@ -59,7 +59,7 @@ def test_it_is_written_as_the_law_that_it_is():
     # Written again as another law, its keys are gone.
     elastic = identify_tissue([record(Elastic(750.0), quick(), 0.1)], "elastic")
     loaded = replace(read_spec(SOFT_TISSUE), text=text, spec=parse_spec(text))
-    text = merge_tissue(loaded, elastic, None, None, replace=True)
+    text = merge_tissue(loaded, elastic, None, None)
     plain = parse_spec(text).environments["soft"]
     assert plain.model == "elastic"
 

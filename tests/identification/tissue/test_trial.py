@@ -65,24 +65,19 @@ def test_the_first_cycle_is_doubted_and_set_apart():
     assert "outside start and end" in "; ".join(fit.trial.remarks)
 
 
-@pytest.mark.parametrize(
-    ("law", "noise"),
-    [(KelvinVoigt(0.574, 0.957), 0.01), pytest.param(synthetic.NOSE, 0.01, marks=pytest.mark.slow)],
-)
-def test_pauses_part_a_record_whose_stretches_are_fitted_together(law, noise):
+def test_a_record_whose_begin_a_pause_cut_off_need_not_begin_at_rest():
     """What happens in a pause is not recorded: the tissue relaxes on, and the probe moves."""
-    motion = slow(3)
-    whole = record(law, motion, noise, 3)
-    kept = np.r_[0:500, 640:660, 700:1100, 1250 : len(motion)]
-    parted = replace(
-        whole, motion=Motion(motion.time[kept], motion.deflection[kept]), force=whole.force[kept]
+    law, motion = KelvinVoigt(0.574, 0.957), slow(3)
+    whole = record(law, motion, 0.01, 3)
+    rest = replace(
+        whole,
+        motion=Motion(motion.time[700:], motion.deflection[700:]),
+        force=whole.force[700:],
+        pauses="1 pause in the record: its longest stretch is used",
     )
-    found = identify_tissue([parted])
+    found = identify_tissue([rest])
     assert found.chosen.law.name == law.name
     assert found.caveats == ()
     assert all(holds(found.chosen.ranges, law.values))
-    (fit,) = found.chosen.fits
-    (said,) = (text for text in fit.trial.remarks if "pauses" in text)
-    assert said.startswith("3 pauses part the record: its stretches are fitted together (0 to ")
-    assert said.endswith("; 20 samples in shorter stretches: left out")
-    assert fit.trial.used.sum() == len(kept) - 20 - 4
+    assert found.remarks == ("record-3: 1 pause in the record: its longest stretch is used",)
+    assert found.chosen.fits[0].trial.unrested

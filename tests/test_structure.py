@@ -202,7 +202,6 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
         "nrs_design.pipeline.runs",
         "nrs_design.cli.printing",
         "nrs_design.cli.gate",
-        "nrs_design.cli.sweep",
     }
     limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
     assert limited == {"nrs_design.search.sdp"}

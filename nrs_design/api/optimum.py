@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.facts.design import finite, optimum_facts
 from nrs_design.pipeline.design import Designed, run_analysis
@@ -80,14 +78,6 @@ class Optimum(AbstractResult):
         for name, gains in self.gains.items():
             for gain, value in gains.items():
                 yield name, gain, f"{value:.6g}", self.units[name][gain]
-
-    def latex(self) -> str:
-        """Return the gains for a paper; one that is rounded is said to be."""
-        exact = {
-            name: {gain: str(Fraction(value)) for gain, value in gains.items()}
-            for name, gains in self.gains.items()
-        }
-        return latex_of_gains(exact, self.units)
 
     def _axis(self) -> object:
         return self.designed.spec.axis

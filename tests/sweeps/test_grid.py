@@ -56,7 +56,10 @@ def test_values(text, values):
     assert list(parse_values(text)) == values
 
 
-REFUSED = "|,|1,|2..1/3 N|1..1/2 N|1..2/0 N|1..2/99999 N|1..2/1|1..2|1...2 N|a..b|1..2/-3|1..|[1, 2]|1,2,1 N"
+REFUSED = (
+    "|,|1,|2..1/3 N|1..1/2 N|1..2/0 N|1..2/99999 N|1..2/1|1..2|1...2 N|a..b|1..2/-3|1..|[1, 2]"
+    "|1,2,1 N"
+)
 
 
 @pytest.mark.parametrize("text", REFUSED.split("|"))

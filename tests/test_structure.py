@@ -251,7 +251,6 @@ def test_a_report_assembles_and_searches_nothing():
     read = {item.target for item in ours() if role(item.source) == "reporting"}
     assert {name for name in read if floor(name) in ("loop", "search")} == {
         "nrs_design.search.certification",
-        "nrs_design.search.gradient_settings",
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
     }
@@ -358,7 +357,7 @@ def test_the_reader_of_imports_sees_them():
     assert ("nrs_design.pipeline.margins", "nrs_design.search.certify") in lazy
     assert ("nrs_design.gating.run", "nrs_design.reporting") in lazy
     typed = {(item.source, item.target) for item in ours() if item.typing_only}
-    assert ("nrs_design.cli.granted", "nrs_design.pipeline.certification") in typed
+    assert ("nrs_design.cli.goals", "nrs_design.pipeline.certification") in typed
 
 
 # Folders whose tests are of their modules; what a file in one of them is across is listed.

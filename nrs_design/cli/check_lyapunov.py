@@ -46,8 +46,10 @@ def check_lyapunov(
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
     found = check(proposal.modes, proposal.P, wanted, time=time)
-    return Answer(
-        lambda: {"file": str(file)} | found.to_dict(),
-        lambda: [say(line) for line in found.lines()],
-        exit_codes.unless(not found.holds),
-    )
+
+    def show() -> None:
+        for line in found.lines():
+            say(line)
+
+    code = exit_codes.unless(not found.holds)
+    return Answer(lambda: {"file": str(file)} | found.to_dict(), show, code)

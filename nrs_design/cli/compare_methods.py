@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.options import Budget, Memory, SpecFile
-from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.options import Budget, GradientSettings, Memory, SpecFile
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
 
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
     from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import LoadedSpec
 
-PANEL = "Gradient iteration"
-
 
 @command("compare-methods")
 def compare_methods(
@@ -29,30 +26,9 @@ def compare_methods(
     optimize_rate: Annotated[
         bool, typer.Option(help="Let every method look for the largest decay rate, too.")
     ] = False,
-    relaxation: Annotated[
-        float,
-        typer.Option(min=0.0, max=2.0, rich_help_panel=PANEL, help="The alpha of thesis 5.25."),
-    ] = 1.0,
-    radius: Annotated[
-        float, typer.Option(rich_help_panel=PANEL, help="The r of thesis 5.25, above 0.")
-    ] = 1.0,
-    start_mode: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MODE", rich_help_panel=PANEL, help="Gives the first Q; default the first mode."
-        ),
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, rich_help_panel=PANEL, help="Of the random order.")
-    ] = 0,
-    max_updates: Annotated[
-        int, typer.Option(min=0, rich_help_panel=PANEL, help="Updates after which it gives up.")
-    ] = 20_000,
+    settings: GradientSettings = None,
     budget: Budget = None,
     memory: Memory = None,
-    figure: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Draw v against updates as a PNG image.")
-    ] = None,
 ) -> Answer:
     """Look for a common quadratic function by LMI and by the Liberzon-Tempo gradient iteration.
 
@@ -62,21 +38,15 @@ def compare_methods(
 
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.output import PNG, check_place
     from nrs_design.pipeline.certification import Overrides, search_limits
     from nrs_design.pipeline.runs import run_comparison
 
-    if figure is not None:
-        check_place(figure, PNG)
     loaded = take_spec(spec)
-    gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
+    gradient = Gradient.of_texts(settings or ())
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"comparing on {loaded.spec.name}") as step:
         system, runs = run_comparison(loaded, limits, step)
-    if figure is not None:
-        _draw(runs, figure)
-        note(f"figure written to {figure}")
     verdicts = [str(run.certification.verdict) for run in runs]
     best = next((v for v in ("refuted", "proved") if v in verdicts), "inconclusive")
     return Answer(
@@ -121,11 +91,3 @@ def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ..
     modes = len(system.modes)
     print_table(f"{loaded.spec.name}: {modes} modes", [*COLUMNS, "time\nms"], rows)
     say("Rates are proved; the condition number of Q is for the states of the modes.")
-
-
-def _draw(runs: tuple[MethodRun, ...], path: Path) -> None:
-    from nrs_design.output import PNG, write_output
-    from nrs_design.reporting.figures.methods import draw_histories
-    from nrs_design.reporting.images import to_png
-
-    write_output(path, to_png(draw_histories(runs)), replaces=PNG)

@@ -31,7 +31,6 @@ BEFORE = {
     "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
     "x.htm": ("identify", "actuator", *ACTUATOR, "--report", "x.htm"),
     "x.html": ("report", SAMPLED, "--out", "x.html"),
-    "x.png": ("compare-methods", COMMUTING, "--figure", "x.png"),
     "soft-tissue-sampled.mat": ("export", SAMPLED, "--format", "mat", "--out", "."),
 }
 

@@ -29,7 +29,6 @@ BENCHMARKS = (
     "bounded_runs",
     "instruction_counts",
     "scenario_runs",
-    "sweep_points",
     "gains_with_proof",
 )
 Result = Comparison | Finding | Failure

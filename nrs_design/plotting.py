@@ -16,38 +16,19 @@ _found = find_spec("matplotlib")
 assert _found is not None
 assert _found.origin is not None
 with contextlib.chdir(Path(_found.origin).with_name("mpl-data")):
-    from matplotlib import get_data_path, style
-    from matplotlib.collections import QuadMesh
-    from matplotlib.colors import to_rgba
-    from matplotlib.figure import Figure
-    from matplotlib.font_manager import findfont
-    from matplotlib.ft2font import FT2Font
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch, Rectangle
-    from matplotlib.text import Text
-    from matplotlib.ticker import (
-        FixedFormatter,
-        Formatter,
-        LogFormatter,
-        MaxNLocator,
-        ScalarFormatter,
-    )
-
-__all__ = [
-    "FT2Font",
-    "Figure",
-    "FixedFormatter",
-    "Formatter",
-    "Line2D",
-    "LogFormatter",
-    "MaxNLocator",
-    "Patch",
-    "QuadMesh",
-    "Rectangle",
-    "ScalarFormatter",
-    "Text",
-    "findfont",
-    "get_data_path",
-    "style",
-    "to_rgba",
-]
+    from matplotlib import get_data_path as get_data_path
+    from matplotlib import style as style
+    from matplotlib.collections import QuadMesh as QuadMesh
+    from matplotlib.colors import to_rgba as to_rgba
+    from matplotlib.figure import Figure as Figure
+    from matplotlib.font_manager import findfont as findfont
+    from matplotlib.ft2font import FT2Font as FT2Font
+    from matplotlib.lines import Line2D as Line2D
+    from matplotlib.patches import Patch as Patch
+    from matplotlib.patches import Rectangle as Rectangle
+    from matplotlib.text import Text as Text
+    from matplotlib.ticker import FixedFormatter as FixedFormatter
+    from matplotlib.ticker import Formatter as Formatter
+    from matplotlib.ticker import LogFormatter as LogFormatter
+    from matplotlib.ticker import MaxNLocator as MaxNLocator
+    from matplotlib.ticker import ScalarFormatter as ScalarFormatter

@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    from joblib import Parallel
+from nrs_design.errors import NrsDesignError
+
+P = TypeVar("P")
+T = TypeVar("T")
 
 # Python that is started, by whatever it is, then leaves the working folder out of `sys.path`.
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 
 
 def run_program(
-    program: str, arguments: Sequence[str], folder: str | Path
+    program: str, arguments: Iterable[str], folder: str | Path
 ) -> subprocess.CompletedProcess[str]:
     """Run a program in a folder that holds what this process has put there, and nothing else."""
     return subprocess.run(
@@ -34,18 +37,51 @@ def run_program(
     )
 
 
-def workers(jobs: int, begin: Callable[..., object], *arguments: object) -> Parallel:
-    """Return so many workers, of which each begins with a call, and gives results as they come.
+def map_in_processes(
+    work: Callable[[P], T], points: Iterable[P], jobs: int
+) -> Iterator[tuple[int, T]]:
+    """Yield the number of each point with its result, as they come; one job is this process.
 
-    They and what keeps track of them start at any time from here on, so the rule stays.
+    Work and points can be pickled. A `NrsDesignError` if a worker dies.
     """
-    os.environ |= SAFE_PATH
-    from joblib import Parallel
+    if jobs == 1:
+        yield from enumerate(map(work, points))
+        return
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures.process import BrokenProcessPool
+    from multiprocessing import active_children, get_context
 
-    return Parallel(
-        n_jobs=jobs,
-        backend="loky",
-        return_as="generator_unordered",
-        initializer=begin,
-        initargs=arguments,
-    )
+    # Workers start at any time from here on, so the rule stays.
+    os.environ |= SAFE_PATH
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin)
+    try:
+        coming = {pool.submit(work, point): number for number, point in enumerate(points)}
+        for future in as_completed(coming):
+            yield coming.pop(future), future.result()
+    except BrokenProcessPool:
+        raise NrsDesignError(
+            "a process died that computed for this one",
+            remedy="there may be too little memory for so many: take fewer --jobs",
+        ) from None
+    finally:
+        # Nobody waits for what was begun and is not wanted any more.
+        for worker in active_children():
+            worker.terminate()
+        pool.shutdown(cancel_futures=True)
+
+
+def _begin() -> None:
+    """Let this worker be silent as its run is, and end when that is no more, however it ended."""
+    from multiprocessing import parent_process
+    from threading import Thread
+
+    # Warnings of libraries are for programmers.
+    warnings.simplefilter("ignore")
+    run = parent_process()
+    assert run is not None, "a worker has one"
+
+    def watch() -> None:
+        run.join()
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()

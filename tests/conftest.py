@@ -26,7 +26,6 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from nrs_design.cli import COLLECT_AFTER
 from tests.browser import axe, browser
 from tests.costs import mark_by_cost, seconds_of
 
@@ -70,7 +69,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
 def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
-    gc.set_threshold(COLLECT_AFTER)
+    gc.set_threshold(200_000)
 
 
 def pytest_runtest_teardown() -> None:

@@ -65,7 +65,7 @@ def house(request, tmp_path_factory):
 
     def program(*arguments):
         # As `-m` does, but it takes the current folder off the path, in which this copy lies.
-        return run("-c", "from nrs_design.cli import program; program()", *arguments)
+        return run("-c", "from nrs_design.cli import main; main()", *arguments)
 
     return SimpleNamespace(wing=request.param, folder=folder, run=run, program=program)
 

@@ -9,7 +9,6 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.paper import form_of, latex_of, latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.errors import OutputError, SpecError
@@ -116,18 +115,13 @@ class Decision(AbstractResult):
 
         None unless one quadratic function decides; `evidence` has the exact numbers.
         """
-        return form_of(self.evidence)
+        known = None if self.evidence is None else self.evidence.quadratic
+        if known is None:
+            return None
+        import numpy as np
 
-    def latex(self) -> str:
-        """Return claim, gains and P for a paper, each number on the side that stays true."""
-        from nrs_design.certificates.units import gain_units
-
-        certification, proof = self.result.certification, self.result.certificate
-        name, time = self.result.loaded.spec.name, certification.system.time
-        shown = latex_of(name, self.verdict, self.decay_rate, time, self.P)
-        if proof is None or not proof.gains:
-            return shown
-        return f"{shown}\n{latex_of_gains(proof.gains, gain_units(proof))}"
+        form, power = known
+        return np.array([[float(Fraction(entry, 2**power)) for entry in row] for row in form])
 
     def _axis(self) -> object:
         return getattr(self.result.loaded.spec, "axis", None)

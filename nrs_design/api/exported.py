@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.optimum import Optimum
-from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures
-from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.exporters import known_format
 from nrs_design.exporters.write import check_places, places, write_export
@@ -102,13 +100,6 @@ class Exported(AbstractResult):
         with placed(self.loaded):
             write_export(self.export, format, files, proof, self.loaded.path)
         return tuple(files.values())
-
-    def latex(self) -> str:
-        """Return the gains for a paper; empty if nothing may be exported."""
-        proof = self.certificate
-        if proof is None or self.record is None:
-            return ""
-        return latex_of_gains(proof.gains, gain_units(proof))
 
     def _axis(self) -> object:
         return None if self.export.spec is None else self.export.spec.axis

@@ -8,7 +8,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from nrs_design.api.paper import latex_of_ranges
 from nrs_design.api.result import AbstractResult, Figures, drawn
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.wings import load_wing
@@ -76,10 +75,6 @@ class Identification(AbstractResult):
     caveats: tuple[str, ...]
     facts: Mapping[str, Any]
     page: Callable[[], Report]
-
-    def latex(self) -> str:
-        """Return the ranges for a paper, their ends rounded outwards."""
-        return latex_of_ranges((n, r.low, r.high, r.unit) for n, r in self.ranges.items())
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)

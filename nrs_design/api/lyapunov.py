@@ -8,14 +8,12 @@ by `nrs_design.proof.exact`, as for certificates.
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.paper import latex_of
 from nrs_design.api.result import AbstractResult
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -43,6 +41,16 @@ RATE_BITS = 20
 DECISIONS = 2 * RATE_BITS
 # A counterexample is written with as few of these decimal digits as show it.
 DIGITS = (1, 2, 4, 8, 16)
+# A longer number is written rounded in words.
+LONGEST = 60
+_LAW = {"continuous": "x' = A x", "discrete": "x+ = A x"}
+# What must be negative, by time and whether a rate is asked for.
+_CHANGE = {
+    ("continuous", False): "x' (A'P + PA) x",
+    ("continuous", True): "x' (A'P + PA + 2 alpha P) x",
+    ("discrete", False): "x' (A'PA - P) x",
+    ("discrete", True): "x' (A'PA - rho^2 P) x",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +92,6 @@ class LyapunovCheck(AbstractResult):
 
         return np.array(self.form.fractions(), dtype=float)
 
-    def latex(self) -> str:
-        """Return the rate, on the side that stays true, and P, rounded for reading."""
-        return latex_of("check-lyapunov", self._headline(), self.rate, self.time, self.P)
-
     def _facts(self) -> dict[str, Any]:
         failing = self.counterexample
         return {
@@ -109,19 +113,40 @@ class LyapunovCheck(AbstractResult):
         asked = "" if self.asked is None else " at the rate asked for"
         return f"x' P x {'holds' if self.holds else 'does not hold'}{asked}"
 
-    def _rows(self) -> Iterator[Sequence[str]]:
-        from nrs_design.proof.bounds import nearly
+    def lines(self) -> Iterator[str]:
+        """Yield what is decided, and why, in words."""
         from nrs_design.proof.evidence.fields import rate_words
 
+        asked, law = self.asked is not None, _LAW[self.time]
+        best = None if self.rate is None else rate_words(self.rate, self.time)
+        if self.holds:
+            yield (
+                f"HOLDS: x' P x is positive definite and, along {law}, decreases strictly in every "
+                f"mode: {', '.join(mode.name for mode in self.modes)}"
+            )
+            if best is None:
+                yield "the numbers are too large to look for its rate: ask for one"
+            else:
+                yield f"{'the rate asked for' if asked else 'proved'}: {best}"
+            return
+        too_slowly = " at this rate" * asked
+        yield f"DOES NOT HOLD: x' P x is not a common Lyapunov function{too_slowly}"
+        if (failing := self.counterexample) is not None:
+            value, *vector = map(_written, (failing.value, *failing.vector))
+            if failing.mode is None:
+                yield f"P is not positive definite: x' P x = {value}"
+            else:
+                yield f"in mode {failing.mode} it does not decrease{too_slowly}:"
+                yield f"{_CHANGE[self.time, asked]} = {value}, which is not below zero,"
+            yield f"at x = ({', '.join(vector)})"
+        if best is not None:
+            yield f"along {law} it decreases strictly in every mode, proved at {best} only"
+        elif self.weak:
+            yield "it increases in no mode, which shows stability but no decay"
+
+    def _rows(self) -> Iterator[Sequence[str]]:
         yield "", ""
-        if self.rate is not None:
-            yield "proved", rate_words(self.rate, self.time)
-        if self.counterexample is not None:
-            where = self.counterexample.mode
-            yield "fails", "P is not positive definite" if where is None else f"in mode {where}"
-            yield "at x, nearly", ", ".join(map(nearly, self.counterexample.vector))
-        if self.weak and self.rate is None:
-            yield "weak", "V increases in no mode: stability, but no decay"
+        yield from (("", line) for line in self.lines())
 
     def __bool__(self) -> bool:
         """Whether it holds."""
@@ -152,10 +177,11 @@ def check_quadratic(
     affordable = DECISIONS * work <= 4 * MAX_WORK
     for mode, form in _forms(modes, P, time, asked):
         if not is_positive_definite(form):
-            weak = _is_weak(modes, P, time)
-            best = None
-            if affordable and _is_proved(modes, P, time, still):
-                best = _best_rate(modes, P, time)
+            first, *others = (M for _, M in _forms(modes, P, time, still))
+            positive = is_positive_definite(first)
+            weak = positive and all(map(is_positive_semidefinite, others))
+            decays = positive and all(map(is_positive_definite, others))
+            best = _best_rate(modes, P, time) if affordable and decays else None
             failing = _counterexample(mode, form, P, asked, time)
             return LyapunovCheck(False, weak, best, failing, tuple(modes), P, time, rate)
     best = _best_rate(modes, P, time) if rate is None and affordable else rate
@@ -215,16 +241,6 @@ def stein_decrease(
     return add(scaled(Q, p), congruence(N, Q), -q)
 
 
-def _is_proved(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) -> bool:
-    return all(is_positive_definite(M) for _, M in _forms(modes, P, time, rate))
-
-
-def _is_weak(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> bool:
-    still = Fraction(int(time is Time.DISCRETE))
-    (_, first), *decreases = _forms(modes, P, time, still)
-    return is_positive_definite(first) and all(is_positive_semidefinite(M) for _, M in decreases)
-
-
 def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction:
     """Bisect the largest alpha, or ``1 - rho``; the rate that is returned has been decided.
 
@@ -235,23 +251,17 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
         return decay if time is Time.CONTINUOUS else 1 - decay
 
     def is_proved(decay: Fraction) -> bool:
-        return _is_proved(modes, P, time, rate_at(decay))
+        forms = _forms(modes, P, time, rate_at(decay))
+        return all(is_positive_definite(form) for _, form in forms)
 
-    first = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
-    low = first / 2 ** _least(lambda k: is_proved(first / 2**k))
+    low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
+    while not is_proved(low):
+        low /= 2
     high = 2 * low
     for _ in range(RATE_BITS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
     return rate_at(low)
-
-
-def _least(holds: Callable[[int], bool]) -> int:
-    """Return the least natural number with a property that all greater ones have, too."""
-    limit = 1
-    while not holds(limit):
-        limit *= 2
-    return bisect_left(range(limit), True, key=holds)
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
@@ -331,3 +341,10 @@ def _solved(rows: IntegerMatrix, k: int, minor: int) -> tuple[Fraction, ...]:
     for i in reversed(range(k)):
         x[i] = -sum(rows[i][j] * x[j] for j in range(i + 1, k + 1)) // rows[i][i]
     return tuple(Fraction(entry, minor) for entry in x)
+
+
+def _written(number: Fraction) -> str:
+    from nrs_design.proof.bounds import nearly
+
+    text = str(number)
+    return text if len(text) <= LONGEST else nearly(number)

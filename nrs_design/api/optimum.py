@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.paper import latex_of_gains
 from nrs_design.api.result import AbstractResult, Figures, drawn
-from nrs_design.facts.design import finite, optimum_facts
+from nrs_design.axis import unit
 from nrs_design.pipeline.design import Designed, run_analysis
+from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.design.analysis import (
+        AbstractControllerAnalysis,
+        DesignAnalysis,
+        ImpedanceAnalysis,
+    )
+    from nrs_design.design.goals import Achieved
+    from nrs_design.design.measures import Measure
+    from nrs_design.design.passivity import SampledBand
+    from nrs_design.spec import InteractionDesignSpec
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,7 +57,8 @@ class Optimum(AbstractResult):
         }
 
     @cached_property
-    def _analysis(self) -> DesignAnalysis:
+    def analysis(self) -> DesignAnalysis:
+        """What the design achieves."""
         return run_analysis(self.designed)
 
     @property
@@ -60,19 +69,19 @@ class Optimum(AbstractResult):
         """
         return {
             item.name: {found.measure.goal: float(found.value) for found in item.achieved}
-            for item in self._analysis.measured
+            for item in self.analysis.measured
         }
 
     @property
     def cost(self) -> dict[str, float]:
         """The cost of displayed impedance and sensitivity, by impedance controller."""
-        return {item.name: float(item.cost) for item in self._analysis.impedance}
+        return {item.name: float(item.cost) for item in self.analysis.impedance}
 
     def drawings(self) -> Figures:
         """Return the figures of the design by name."""
         from nrs_design.reporting.sections.design import design_sections
 
-        sections = design_sections(self.designed, self._analysis)
+        sections = design_sections(self.designed, self.analysis)
         return drawn(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
@@ -81,28 +90,17 @@ class Optimum(AbstractResult):
             for gain, value in gains.items():
                 yield name, gain, f"{value:.6g}", self.units[name][gain]
 
-    def latex(self) -> str:
-        """Return the gains for a paper; one that is rounded is said to be."""
-        exact = {
-            name: {gain: str(Fraction(value)) for gain, value in gains.items()}
-            for name, gains in self.gains.items()
-        }
-        return latex_of_gains(exact, self.units)
-
     def _axis(self) -> object:
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        analysis = self._analysis
+        analysis = self.analysis
         return {
             **self.designed.loaded.facts,
-            **optimum_facts(self.designed, analysis),
+            "motion_loop": motion_summary(analysis),
+            "sensor": _sensor(self.designed),
+            "controllers": [_summary(self.designed.spec, item) for item in analysis.impedance],
             "warnings": [str(doubt) for doubt in analysis.warnings],
-            "gains": self.gains,
-            "units": self.units,
-            # JSON has no infinity: null is what nothing limits.
-            "margins": {name: _finite(found) for name, found in self.margins.items()},
-            "cost": _finite(self.cost),
         }
 
     def _drawings(self) -> Figures:
@@ -128,5 +126,132 @@ class Optimum(AbstractResult):
         return "\n".join(lines)
 
 
-def _finite(values: Mapping[str, float]) -> dict[str, float | None]:
-    return {name: finite(value) for name, value in values.items()}
+def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
+    """Describe which motion loop G is in use."""
+    return {
+        "source": analysis.motion_source,
+        "numerator": list(analysis.motion.numerator),
+        "denominator": list(analysis.motion.denominator),
+    }
+
+
+def meanings(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
+    """Yield what the values of the table are about."""
+    from nrs_design.design.measures import COST_MEANING, LIMIT_MEANING, MEANING, computed
+
+    yield MEANING[0]
+    yield LIMIT_MEANING
+    yield from computed({item.name: item.proved_titles for item in items})
+    yield COST_MEANING
+
+
+def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
+    from nrs_design.design import measures
+
+    def worst(measure: Measure) -> float | None:
+        return finite(item.worst(measure).value)
+
+    band = item.band
+    passive, broken = (None, None) if band is None else (band.passive, band.broken)
+    return {
+        "name": item.name,
+        "desired_impedance": item.problem.desired,
+        "environment": item.problem.loop.contact.given(),
+        "stiffness": item.problem.loop.contact.stiffness,
+        "Mt": item.Mt,
+        "Bt": item.Bt,
+        "Kt": item.problem.loop.Kt,
+        "cost": item.cost,
+        "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
+        "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
+        "sensitivity_peak": worst(measures.SENSITIVITY_PEAK),
+        "gain_margin": worst(measures.GAIN_MARGIN),
+        "phase_margin_rad": worst(measures.PHASE_MARGIN),
+        "delay_margin_s": worst(measures.DELAY_MARGIN),
+        "disk_margin": worst(measures.DISK_MARGIN),
+        "stiffness_limit": finite(item.lowest_limit),
+        "stiffness_limit_at": item.limit_at,
+        "over": [*meanings([item])],
+        "lever_arm_m": item.lever_arm,
+        "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
+        "passive_up_to_rad_s": passive and lower_float(passive),
+        "not_passive_at_rad_s": broken and upper_float(broken),
+        "passivity_not_computed": None
+        if item.sampled or spec.sampling is None
+        else measures.PASSIVITY_NOT_COMPUTED,
+        "sampled_passivity": [_band(band) for band in item.sampled],
+        "goals": goals_summary(item),
+        "responses": responses_summary(item),
+        "units": {
+            "Mt": unit("kg*m^2"),
+            "Bt": unit("N*m*s/rad"),
+            "Kt": unit("N*m/rad"),
+            "impedance": unit("N*m*s/rad"),
+            "stiffness": unit("N*m/rad"),
+        },
+    }
+
+
+def _band(band: SampledBand) -> dict[str, Any]:
+    """Return where a sampled law is passive, and the exact witness that it is not beyond."""
+    between = band.broken and [lower_float(band.broken[0]), upper_float(band.broken[1])]
+    return {
+        "delay": band.age,
+        "passive_up_to_rad_s": lower_float(band.passive),
+        "not_passive_between_rad_s": between,
+        "not_passive_at_tangent": band.tangent and str(band.tangent),
+    }
+
+
+def _sensor(designed: Designed) -> dict[str, Any]:
+    """Return what may last of the errors of the force signal, N m, rounded up."""
+    sensor = designed.design.sensor
+    return {
+        "lasting_error": upper_float(sensor.lasting),
+        "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
+        "unit": unit("N*m"),
+    }
+
+
+def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
+    """Return the goals for frequency responses, and what is proved of them, in SI units."""
+    return [
+        {
+            "goal": found.key,
+            "wanted": found.wanted,
+            "limit": float(found.limit),
+            "at_most": None if found.above is None else upper_float(found.above),
+            "at_least": None if found.below is None else lower_float(found.below),
+            "unit": found.unit,
+            "shown": found.said,
+            "status": found.ends,
+        }
+        for found in item.responses
+    ]
+
+
+def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
+    """Return everything that was measured, with its goal if there is one, in SI units."""
+    return [_goal(found) for found in item.judged]
+
+
+def _goal(found: Achieved) -> dict[str, Any]:
+    measure = found.measure
+    unfavorable = upper_float if measure.upper else lower_float
+    return {
+        "goal": measure.goal,
+        "wanted": found.goal,
+        # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
+        # what is not computed, as `at` then says.
+        "worst": finite(found.value),
+        # What no constant values in the ranges are worse than; null is not shown.
+        "proved": None if found.proved is None else unfavorable(found.proved),
+        "unit": measure.si_unit,
+        "at": found.where,
+        "status": None if found.goal is None else str(found.standing),
+    }
+
+
+def finite(value: float) -> float | None:
+    """Return a number for JSON, which has no infinity; None says unbounded."""
+    return value if math.isfinite(value) else None

@@ -9,10 +9,10 @@ from typing import Any
 
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
 from nrs_design.axis import axis_with
+from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.prove import Verification
 from nrs_design.certificates.verify import verify as verify_file
-from nrs_design.facts.verification import verification_facts
 from nrs_design.pipeline.certification import recorded_certification
 from nrs_design.spec import read_spec
 
@@ -61,7 +61,22 @@ class Recheck(AbstractResult):
         return None if self.certificate is None else axis_with(self.certificate.system.states)
 
     def _facts(self) -> dict[str, Any]:
-        return verification_facts(self.outcome, self.file, self.spec)
+        from nrs_design.certificates.units import gain_units
+
+        kept = self._valid()
+        compared = kept if self.spec is not None else None
+        return {
+            "verdict": self.verdict,
+            "refuted_in": kept.refuted_in if kept else None,
+            "fault": self.fault,
+            "claims": None if kept is None else list(self.claims),
+            "gains": dict(compared.gains) if compared else None,
+            "gain_units": gain_units(compared) if compared else None,
+            "assumptions": list(sentences(compared.granted)) if compared else None,
+            "certificate": str(self.file),
+            "certificate_id": kept.id if kept else None,
+            "spec": None if self.spec is None else str(self.spec),
+        }
 
     def _valid(self) -> Certificate | None:
         return self.certificate if self.fault is None else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.result import AbstractResult, Figures
 from nrs_design.axis import unit
@@ -231,13 +231,7 @@ class Simulation(AbstractResult):
         """How many runs there are."""
         return len(self.runs)
 
-    @overload
-    def __getitem__(self, key: int | str) -> ScenarioRun: ...
-
-    @overload
-    def __getitem__(self, key: slice) -> tuple[ScenarioRun, ...]: ...
-
-    def __getitem__(self, key: int | str | slice) -> ScenarioRun | tuple[ScenarioRun, ...]:
+    def __getitem__(self, key: int | str) -> ScenarioRun:
         """Return a run by its place or by the name of its scenario.
 
         Raises

@@ -18,14 +18,11 @@ from nrs_design.spec.exact import parse_exact
 
 # That of doubles has at most 1074.
 MAX_DENOMINATOR_BITS = 2048
-# Kinds of NumPy's timedelta64 and datetime64.
-_TIMES = ("m", "M")
 
 
 def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
     """Read a matrix as exact rows: NumPy, lists of numbers or texts, or a state space's A."""
     held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
-    _refuse_times(held, name)
     rows = held.tolist() if hasattr(held, "tolist") else held
     if not isinstance(rows, Sequence) or isinstance(rows, str) or not rows:
         raise _no_matrix(name, held)
@@ -56,7 +53,6 @@ def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -
 
 def read_number(value: object, name: str = "the value") -> Fraction:
     """Read a number exactly: text as it is written, a float as the binary number that it is."""
-    _refuse_times(value, name)
     if isinstance(value, str | Decimal):
         return parse_exact(str(value))
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -73,15 +69,6 @@ def read_number(value: object, name: str = "the value") -> Fraction:
             remedy="give a finite float, or the exact number as text",
         )
     return Fraction(number)
-
-
-def _refuse_times(value: object, name: str) -> None:
-    """Refuse times and dates of NumPy, which pass for the integers that they are counted in."""
-    if getattr(getattr(value, "dtype", None), "kind", "") in _TIMES:
-        raise SpecError(
-            f"{name} holds times or dates, which are no numbers",
-            remedy="divide by a unit: value / np.timedelta64(1, 's')",
-        )
 
 
 def is_state_space(value: object) -> bool:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO, NoReturn
+from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular, read_json_text, unique_keys
@@ -44,43 +43,33 @@ def read_proposal(path: Path) -> Proposal:
             path=path,
             remedy="write P and the modes as JSON, or call nrs_design.check_lyapunov on arrays",
         )
-    if not path.is_file():
-        raise DataError("is not a file", path=path, remedy="check the path")
     try:
         with open_regular(path) as file:
-            return _proposal(_read(file, path), path)
-    except OSError as error:
-        raise DataError(
-            f"cannot be read ({error.strerror})", path=path, remedy="check the path"
-        ) from error
+            raw = file.read(MAX_BYTES + 1)
+        if len(raw) > MAX_BYTES:
+            raise ValueError(f"larger than {MAX_BYTES} bytes")
+        return _proposal(_read_json(raw))
+    except (OSError, ValueError, RecursionError) as error:
+        said = error.strerror if isinstance(error, OSError) else error
+        raise DataError(f"cannot be read ({said})", path=path, remedy=_CONTENT) from error
 
 
-def _read(file: BinaryIO, path: Path) -> Mapping[str, Any]:
-    if os.fstat(file.fileno()).st_size > MAX_BYTES:
-        raise DataError(f"is larger than {MAX_BYTES} bytes", path=path, remedy="name a smaller one")
-    try:
-        return _read_json(file.read(MAX_BYTES))
-    except (ValueError, RecursionError) as error:
-        raise DataError(f"cannot be read ({error})", path=path, remedy=_CONTENT) from error
-
-
-def _proposal(content: Mapping[str, Any], path: Path) -> Proposal:
+def _proposal(content: Mapping[str, Any]) -> Proposal:
     if "P" not in content:
-        raise DataError("holds no `P`", path=path, remedy=_CONTENT)
-    modes = _modes(content, path)
+        raise ValueError("it holds no `P`")
     time = content.get("time")
-    if time is not None and time not in ("continuous", "discrete"):
-        raise DataError("its `time` is not known", path=path, remedy="continuous or discrete")
-    return Proposal(modes, content["P"], content.get("rate"), time)
+    if time not in (None, "continuous", "discrete"):
+        raise ValueError("its `time` is neither continuous nor discrete")
+    return Proposal(_modes(content), content["P"], content.get("rate"), time)
 
 
-def _modes(content: Mapping[str, Any], path: Path) -> dict[str, object]:
+def _modes(content: Mapping[str, Any]) -> dict[str, object]:
     numbered = sorted(filter(_NUMBERED.fullmatch, content), key=lambda key: int(key[1:]))
+    held = content.get("A")
     if "A" in content and numbered:
-        raise DataError("holds both `A` and numbered modes", path=path, remedy="keep one of them")
+        raise ValueError("it holds both `A` and numbered modes")
     if numbered:
         return {key: content[key] for key in numbered}
-    held = content.get("A")
     if isinstance(held, dict) and held:
         return held
     if isinstance(held, list) and held:
@@ -88,7 +77,7 @@ def _modes(content: Mapping[str, Any], path: Path) -> dict[str, object]:
         single = not (rows and isinstance(rows[0], list))
         matrices = [held] if single else held
         return {f"A{index + 1}": matrix for index, matrix in enumerate(matrices)}
-    raise DataError("holds no modes", path=path, remedy=_CONTENT)
+    raise ValueError("it holds no modes")
 
 
 def _read_json(raw: bytes) -> dict[str, Any]:

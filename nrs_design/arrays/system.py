@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -20,7 +19,6 @@ from nrs_design.spec.document import hash_meaning, parse_document
 from nrs_design.spec.places import file_faults
 
 Document = dict[str, Any]
-_NAME = re.compile(r"(?<![\w.])[a-zA-Z]")
 
 
 def spec_of_matrices(
@@ -79,22 +77,7 @@ def _entries(matrix: object, label: str, uncertain: bool) -> list[list[str]]:
     """Return entries as the texts of a spec; with parameters, texts may be expressions."""
     if uncertain and isinstance(matrix, list | tuple) and not is_state_space(matrix):
         return [[_entry(entry, label) for entry in row] for row in matrix]
-    try:
-        return _texts(read_rows(matrix, f"mode {label}"))
-    except SpecError as error:
-        if uncertain or not _holds_a_name(matrix):
-            raise
-        raise SpecError(
-            f"mode {label}: {error.message}",
-            remedy="name what is uncertain: parameters={'k': (lowest, highest)}",
-        ) from None
-
-
-def _holds_a_name(matrix: object) -> bool:
-    """Tell whether an entry is a text in which a letter begins a name, as parameters do."""
-    rows = matrix if isinstance(matrix, list | tuple) else ()
-    entries = (entry for row in rows if isinstance(row, list | tuple) for entry in row)
-    return any(isinstance(entry, str) and _NAME.search(entry) for entry in entries)
+    return _texts(read_rows(matrix, f"mode {label}"))
 
 
 def _entry(entry: object, label: str) -> str:

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-import atexit
-import gc
-import os
 import sys
 import warnings
-from contextlib import suppress
 from typing import NoReturn
 
 from nrs_design.cli import exit_codes
 
-__all__ = ["main", "program"]
+__all__ = ["main"]
 
-# Imports make many objects that stay until the end, so the collector need not look at them.
-COLLECT_AFTER = 200_000
 # Of addresses, in bytes: with less, OpenBLAS ends the process with code 1.
 LEAST_MEMORY = 512 * 2**20
 
@@ -26,9 +20,6 @@ def main() -> None:
     Under ``-W error`` warnings are shown, but do not end the program: they are about code, not
     about a spec.
     """
-    gc.set_threshold(COLLECT_AFTER)
-    # At the end there is nothing worth collecting.
-    atexit.register(gc.freeze)
     if any(entry[0] == "error" for entry in warnings.filters):
         warnings.simplefilter("default")
     try:
@@ -64,27 +55,3 @@ def _end(message: str, code: int) -> NoReturn:
     if sys.stderr:
         sys.stderr.write(f"{message}\n")
     sys.exit(code)
-
-
-def program() -> None:
-    """Run the program as a process of its own, and end it without tearing down libraries.
-
-    Tearing them down takes longer than checking a certificate. Exit handlers of others run before.
-    """
-    code: int | None = None
-
-    def end() -> None:
-        with suppress(OSError, ValueError):
-            sys.stderr.flush()
-            sys.stdout.flush()
-            if code is not None:
-                os._exit(code)
-
-    # Registered first, so called last.
-    atexit.register(end)
-    try:
-        main()
-    except SystemExit as ending:
-        if ending.code is None or isinstance(ending.code, int):
-            code = ending.code or 0
-        raise

@@ -5,15 +5,15 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib import import_module
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
-from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.printing import insist, print_json
 from nrs_design.cli.streams import lasting
 from nrs_design.errors import ClockError, NrsDesignError
@@ -40,6 +40,29 @@ SETTINGS = {
     # No other package takes part in reading specs.
     "PYDANTIC_DISABLE_PLUGINS": "__all__",
 }
+
+
+class CommandGroup(TyperGroup):
+    """Commands whose messages about arguments are printable: a shell may put a file name there."""
+
+    def make_context(self, *args: Any, **kwargs: Any) -> Any:
+        """Read the arguments of the program."""
+        return _printably(super().make_context, *args, **kwargs)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Read the arguments of a command and run it."""
+        return _printably(super().invoke, ctx)
+
+
+def _printably(call: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    try:
+        return call(*args, **kwargs)
+    except Exception as error:
+        # Wrong usage: the command-line library prints it.
+        if hasattr(error, "format_message") and hasattr(error, "message"):
+            # pydantic puts "Value error, " in front of our messages.
+            error.message = printable(error.message).removeprefix("Value error, ")
+        raise
 
 
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:

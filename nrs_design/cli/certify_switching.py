@@ -10,8 +10,8 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.granted import print_granted
-from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
+from nrs_design.cli.goals import print_goal, print_granted
+from nrs_design.cli.options import Budget, GradientSettings, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say, wants_details, wants_json, wants_text
 from nrs_design.facts.certification import (
     blocked_facts,
@@ -55,15 +55,7 @@ def certify_switching(
     memory: Memory = None,
     margin: LargestBox = False,
     shortest_dwell: ShortestDwell = False,
-    settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="NAME=VALUE",
-            help="A setting of --method gradient: relaxation, radius, start, order, seed, "
-            "max_updates, coordinates.",
-        ),
-    ] = None,
+    settings: GradientSettings = None,
 ) -> Answer:
     """Prove or refute exponential stability under the declared switching.
 
@@ -200,8 +192,7 @@ def _print(result: Result) -> None:
             took = took if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")
     for goal in certified_goals(result.loaded.spec, result.certificate):
-        ends = "met" if goal.met else "NOT PROVED"
-        say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
+        print_goal(goal, "  ")
     print_granted(result)
 
 

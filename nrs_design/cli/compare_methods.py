@@ -9,7 +9,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.options import Budget, Memory, SpecFile
+from nrs_design.cli.options import Budget, GradientSettings, Memory, SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
@@ -29,25 +29,7 @@ def compare_methods(
     optimize_rate: Annotated[
         bool, typer.Option(help="Let every method look for the largest decay rate, too.")
     ] = False,
-    relaxation: Annotated[
-        float,
-        typer.Option(min=0.0, max=2.0, rich_help_panel=PANEL, help="The alpha of thesis 5.25."),
-    ] = 1.0,
-    radius: Annotated[
-        float, typer.Option(rich_help_panel=PANEL, help="The r of thesis 5.25, above 0.")
-    ] = 1.0,
-    start_mode: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MODE", rich_help_panel=PANEL, help="Gives the first Q; default the first mode."
-        ),
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(min=0, rich_help_panel=PANEL, help="Of the random order.")
-    ] = 0,
-    max_updates: Annotated[
-        int, typer.Option(min=0, rich_help_panel=PANEL, help="Updates after which it gives up.")
-    ] = 20_000,
+    settings: GradientSettings = None,
     budget: Budget = None,
     memory: Memory = None,
 ) -> Answer:
@@ -63,7 +45,7 @@ def compare_methods(
     from nrs_design.pipeline.runs import run_comparison
 
     loaded = take_spec(spec)
-    gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
+    gradient = Gradient.of_texts(settings or ())
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"comparing on {loaded.spec.name}") as step:

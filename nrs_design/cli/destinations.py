@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -113,17 +112,3 @@ def _write_spec(spec: LoadedSpec, text: str) -> None:
     for line in lost:
         insist(f"warning: no longer there: {line}")
     note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it")
-
-
-def check_beside(loaded: LoadedSpec, out: Path) -> None:
-    """Refuse a place for a changed spec at which the files that it names are not found."""
-    from nrs_design.errors import OutputError
-    from nrs_design.gating.recorded import hash_followed
-
-    beside = os.path.realpath(out.parent) == os.path.realpath(loaded.path.parent)
-    if hash_followed(loaded) and not beside:
-        raise OutputError(
-            "the spec names files beside itself",
-            path=out,
-            remedy=f"write into {loaded.path.parent}, too",
-        )

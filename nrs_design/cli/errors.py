@@ -111,14 +111,8 @@ def excerpt(line: str, column: int, width: int) -> tuple[str, int]:
 
     before = printable(line[: column - 1][-2 * width :])
     after = printable(line[column - 1 :][: 2 * width])
-    if cell_len(before + after) <= width:
-        return before + after, cell_len(before)
-    room = width * 2 // 3
-    if cell_len(before) > room:
-        while cell_len(before) > room - 3:
+    if cell_len(before + after) > width:
+        while cell_len(before) > width // 2:
             before = before[1:]
-        before = f"...{before}"
-    room = width - cell_len(before)
-    if cell_len(after) > room:
-        after = set_cell_size(after, room - 3).rstrip() + "..."
+        after = set_cell_size(after, width - cell_len(before)).rstrip()
     return before + after, cell_len(before)

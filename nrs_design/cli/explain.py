@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import textwrap
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,8 +12,6 @@ from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.gating.rules import Rule, Word
-
-WIDTH = 88
 
 
 @command("explain")
@@ -60,12 +56,7 @@ def _list(rules: list[Rule], words: list[Word]) -> None:
 
 def _explain(entry: Rule | Word) -> None:
     say(entry.heading)
-    width = min(WIDTH, shutil.get_terminal_size((WIDTH, 24)).columns)
-    # An option such as --max-degree is never broken in two.
-    wrap = textwrap.TextWrapper(width, break_on_hyphens=False)
-    wrap.initial_indent = wrap.subsequent_indent = "  "
     for heading, text in (("Meaning", entry.explanation), ("What to do", entry.remedy)):
         say()
         say(heading)
-        for line in wrap.wrap(text):
-            say(line)
+        say(f"  {text}", hanging=0)

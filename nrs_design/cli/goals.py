@@ -1,4 +1,4 @@
-"""What `optimize` and `tune` say about goals."""
+"""What several commands say of goals, and of what a proof takes for granted."""
 
 from __future__ import annotations
 
@@ -7,13 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
-from nrs_design.cli.printing import detail, note, say
+from nrs_design.cli.printing import detail, note, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import AbstractControllerAnalysis, DesignAnalysis
-    from nrs_design.pipeline.design import Designed
-    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.api.optimum import Optimum
+    from nrs_design.certificates.goals import CertifiedGoal
+    from nrs_design.design.analysis import AbstractControllerAnalysis
+    from nrs_design.pipeline.certification import Result
+
+
+# The option -v prints as many names of modes; --json prints all names.
+MODE_NAMES = 10
 
 
 def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
@@ -40,20 +46,32 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
             detail(line)
 
 
-def print_responses(analysis: DesignAnalysis) -> None:
-    """Print what is proved of frequency responses; nothing without goals for them."""
-    from nrs_design.design.measures import RESPONSE_MEANING
+def print_goal(goal: CertifiedGoal, indent: str = "") -> None:
+    """Print what is proved of a goal of the certificate."""
+    ends = "PROVED" if goal.met else "NOT PROVED"
+    say(f"{indent}goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
 
-    judged = [(item.name, found) for item in analysis.impedance for found in item.responses]
-    for name, found in judged:
-        say(f"{name}: {found.key}, {found.wanted}: {found.ends.upper()}: {found.said}")
-    if judged:
-        detail(RESPONSE_MEANING)
+
+def print_granted(result: Result) -> None:
+    """Print what is taken for granted: all of it, or how much and what is not modelled."""
+    from nrs_design.certificates.catalogue import sentences
+
+    certification = result.certification
+    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
+    detail("  taken for granted (nrs-design report says how to test each):")
+    for text in sentences(granted):
+        detail(f"    - {text}")
+    detail(f"  common quadratic function: {certification.common_quadratic}")
+    remainder = f" and {len(names) - MODE_NAMES} more" if len(names) > MODE_NAMES else ""
+    detail(f"  {counted(len(names), 'mode')}: {', '.join(names[:MODE_NAMES])}{remainder}")
+    if granted and not wants_details():
+        without = "; ".join(result.omits)
+        besides = f"; not modelled: {without}" if without else ""
+        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")
 
 
 def design_answer(
-    designed: Designed,
-    analysis: DesignAnalysis,
+    shown: Optimum,
     items: Iterable[AbstractControllerAnalysis],
     facts: Callable[[], dict[str, Any]],
     show: Callable[[], object],
@@ -66,20 +84,27 @@ def design_answer(
     The exit code is 1 if an item misses a goal, or one that needs a proof is not `proved`.
     `judged`: `show` says what is proved of the goals of a certificate.
     """
-    loaded, spec, doubts = designed.loaded, designed.spec, analysis.warnings
+    from nrs_design.spec.goals import OF_THE_CERTIFICATE
+
+    spec, doubts = shown.designed.spec, shown.analysis.warnings
+    given = () if judged or spec.goals is None else (key for key, _ in spec.goals.given())
+    left = [key for key in given if key in OF_THE_CERTIFICATE]
 
     def show_all() -> None:
         for doubt in doubts[:1]:
             note(f"warning: {doubt}")
         show()
         _print_goals(spec.name, items)
-        if not judged:
-            _say_unjudged(spec)
+        if left:
+            keys = ", ".join(left)
+            say(f"Not judged here: {keys}. A proof decides: nrs-design certify-switching.")
         for doubt in doubts[1:]:
             note(f"warning: {doubt}")
 
     return Answer(
-        lambda: loaded.facts | facts() | {"warnings": [str(doubt) for doubt in doubts]},
+        lambda: (
+            shown.designed.loaded.facts | facts() | {"warnings": [str(doubt) for doubt in doubts]}
+        ),
         show_all,
         _exit_code(items, proved=proved),
     )
@@ -93,13 +118,3 @@ def _exit_code(items: Iterable[AbstractControllerAnalysis], *, proved: bool) -> 
     if not proved or GoalStanding.MISSED in found:
         return exit_codes.REFUTED
     return exit_codes.INCONCLUSIVE if GoalStanding.NOT_JUDGED in found else exit_codes.PROVED
-
-
-def _say_unjudged(spec: InteractionDesignSpec) -> None:
-    """Print which goals no number of a design decides; nothing without them."""
-    from nrs_design.spec.goals import OF_THE_CERTIFICATE
-
-    given = () if spec.goals is None else (key for key, _ in spec.goals.given())
-    keys = [key for key in given if key in OF_THE_CERTIFICATE]
-    if keys:
-        say(f"Not judged here: {', '.join(keys)}. A proof decides: nrs-design certify-switching.")

@@ -9,9 +9,8 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.printing import insist, note
+from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
-from nrs_design.files import open_regular
 
 # As the first line of every template says.
 SCHEMA = "nrs.schema.json"
@@ -38,7 +37,10 @@ def init(
     ] = "motor",
     axis: Annotated[
         Literal["rotary", "prismatic"],
-        typer.Option(help="Of an interaction-design: it turns, or it slides; not with torques."),
+        typer.Option(
+            help="Of an interaction-design: it turns, or it slides. Over torques, write `axis: "
+            "prismatic` into the file."
+        ),
     ] = "rotary",
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
@@ -95,13 +97,3 @@ def _write_schema(path: Path) -> None:
     if not path.exists():
         write_output(path, schema_text())
         note(f"{path} written, for help in your editor")
-        return
-    wanted = schema_text().encode()
-    try:
-        with open_regular(path) as file:
-            same = file.read(2 * len(wanted)).replace(b"\r\n", b"\n") == wanted
-    except OSError as error:
-        note(f"{path} cannot be read ({error.strerror})")
-        return
-    if not same:
-        insist(f"{path} is that of another version: `nrs-design schema --out {path}` renews it")

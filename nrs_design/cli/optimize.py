@@ -2,47 +2,47 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+import math
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.goals import design_answer, print_responses
+from nrs_design.cli.goals import design_answer, print_goal, print_granted
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.tables import print_table
-from nrs_design.facts.design import meanings, optimum_facts
+from nrs_design.proof.bounds import lower, lower_float
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.api.optimum import Optimum
+    from nrs_design.certificates.goals import CertifiedGoal
+    from nrs_design.design.analysis import ImpedanceAnalysis
+    from nrs_design.pipeline.certified_optimum import CertifiedOptimum
+    from nrs_design.pipeline.design import Designed
+
+_ON_BOUND = (
+    "the cost has neither noise of the sensor nor effort of the motor: look at both before you "
+    "take it"
+)
 
 
 @command("optimize", each_axis=True)
-def optimize(
-    spec: SpecFile,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="NEW.nrs.yaml",
-            help="Write the spec with these gains given, named after the file, and its "
-            "certificate to reports/NAME.cert.json; for goals decay_rate, peak_torque and delay.",
-        ),
-    ] = None,
-) -> Answer:
+def optimize(spec: SpecFile) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
     Goals of the spec are respected. With decay_rate, peak_torque or delay among them, the gains of
     all controllers are chosen together, and those that design.free names, and come with their
-    proof. The exit code is 1 if gains that are given miss a goal, or if one of a proof is
-    not proved, and 3 if one is not judged.
+    proof; every command takes these gains, and `gate` writes their certificate. The exit code is 1
+    if gains that are given miss a goal, or if one of a proof is not proved, and 3 if one is not
+    judged.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.cli.certified_gains import CertifiedGains
-    from nrs_design.pipeline.design import design_at_least_cost, interaction_of, run_analysis
+    from nrs_design.api.optimum import Optimum
+    from nrs_design.controllers.gains import steering_goals
+    from nrs_design.pipeline.design import design_at_least_cost, interaction_of
 
     loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
@@ -50,46 +50,112 @@ def optimize(
         interaction_of(loaded, "has nothing to design")
         designed = design_at_least_cost(loaded)
         assert designed is not None, "an interaction design"
+        shown, found = Optimum(designed), None
+        goals: list[CertifiedGoal] = []
         step("margins")
-        analysis = run_analysis(designed)
-    certified = CertifiedGains.of(designed, analysis, out)
-    if certified is not None:
-        designed, analysis = certified.designed, certified.analysis
+        responses = shown.analysis.impedance
+        if steering_goals(designed.spec):
+            from nrs_design.certificates.goals import certified_goals
+            from nrs_design.pipeline.certified_optimum import run_certified_optimum
+
+            step("gains with their proof")
+            found = run_certified_optimum(designed, shown.analysis, step)
+            assert found.result.designed is not None, "as it was designed before"
+            shown = Optimum(found.result.designed)
+            goals = [*certified_goals(shown.designed.spec, found.result.certificate)]
+            responses = shown.analysis.impedance
 
     def facts() -> dict[str, Any]:
-        return {
-            **optimum_facts(designed, analysis),
-            "certified": None if certified is None else certified.facts(),
-        }
+        return shown.to_dict() | {"certified": found and _certified_facts(found, goals)}
 
     def show() -> None:
-        if not analysis.impedance:
-            note("no impedance controllers in this spec; see nrs-design tune for the others")
-        _print(designed.spec, analysis)
-        print_responses(analysis)
-        if certified is not None:
-            certified.show()
+        _print(shown)
+        if found is not None:
+            for goal in goals:
+                print_goal(goal)
+            _print_certified(shown, found)
+            _print_freed(designed, shown, found)
 
-    proved = all(found.proved for item in analysis.impedance for found in item.responses)
-    proved = proved and (certified is None or certified.proved)
-    has_proof = certified is not None
-    return design_answer(
-        designed, analysis, analysis.impedance, facts, show, proved=proved, judged=has_proof
-    )
+    proved = all(one.proved for item in responses for one in item.responses)
+    proved = proved and all(goal.met for goal in goals)
+    return design_answer(shown, responses, facts, show, proved=proved, judged=found is not None)
 
 
-def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
+def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
+    """Return what is proved of gains that were chosen by it, in SI units."""
+    from nrs_design.certificates.goals import decay_rate
+
+    rate = decay_rate(found.result.certificate)
+    return {
+        "gains": {f"{name}.{gain}": text for (name, gain), text in found.gains.items()},
+        "cost": found.cost,
+        "free_cost": found.free_cost,
+        "free_decay_rate": found.free_rate,
+        "binds": [goal.key for goal in found.goals if goal.binds],
+        "prices": {goal.key: goal.price for goal in found.goals},
+        "goals": [
+            {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
+            for goal in goals
+        ],
+        "decay_rate": None if rate is None else lower_float(rate),
+        "designs_tried": found.tried,
+        "at_bounds": dict(found.at_bounds),
+        "declares_delay": _declared(found),
+    }
+
+
+def _declared(found: CertifiedOptimum) -> list[int] | None:
+    """Return the ages of the force that were declared beyond those of the spec."""
+    certificate = found.result.certificate
+    return None if certificate is None or certificate.ages is None else [*certificate.ages]
+
+
+def _print_certified(shown: Optimum, found: CertifiedOptimum) -> None:
+    """Print what a proof takes for granted by which gains were chosen, and what it costs."""
+    print_granted(found.result)
+    if shown.analysis.impedance:
+        more = max(found.cost - found.free_cost, 0.0)
+        free = found.free_rate
+        rate = "" if free is None else f", which decays with {free:.3g} 1/s (floating point)"
+        say(
+            f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without goals "
+            f"of a proof{rate}"
+        )
+        for steered in found.goals:
+            tighter = steered.price_of_a_percent
+            price = "" if tighter is None else f": 1 % tighter costs about {tighter:.2g}"
+            say(f"{steered.key} {f'binds{price}' if steered.binds else 'does not raise the cost'}")
+
+
+def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> None:
+    """Print gains and ages that are not those of the spec."""
+    units, bounds = shown.designed.design.units, dict(found.at_bounds)
+    for name, free in given.spec.design.free.items():
+        for gain, _ in free.given():
+            value = shown.designed.design.laws[name].gains[gain]
+            times = f"{float(value / given.design.laws[name].gains[gain]):.3g} times the given one"
+            on = bounds.get(f"{name} {gain}")
+            end = "" if on is None else f": on its {on} bound; {_ON_BOUND}"
+            say(f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}{end}")
+    if (delay := _declared(found)) is not None:
+        say(f"proved for `sampling.delay: {delay}`, more than the spec declares")
+
+
+def _print(shown: Optimum) -> None:
+    from nrs_design.design.measures import RESPONSE_MEANING
+
+    items, name = shown.analysis.impedance, shown.designed.spec.name
     if wants_details():
         from nrs_design.reporting.formatting import polynomial_text
 
-        G = analysis.motion
-        source = "by root locus" if analysis.motion_source == "designed" else "given in the spec"
+        G = shown.analysis.motion
+        designed = shown.analysis.motion_source == "designed"
+        source = "by root locus" if designed else "given in the spec"
         numerator, denominator = map(polynomial_text, (G.numerator, G.denominator))
-        say(f"{spec.name}: G(s) = ({numerator}) / ({denominator}), {source}")
-    if not analysis.impedance:
+        say(f"{name}: G(s) = ({numerator}) / ({denominator}), {source}")
+    if not items:
+        note("no impedance controllers in this spec; see nrs-design tune for the others")
         return
-    from nrs_design.cli.marked import basis, cells, marks, worst_of
-
     columns = [
         "controller",
         f"Mt\n{unit('kg m^2')}",
@@ -102,12 +168,75 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
         "disk\nmargin",
         f"stands up to\n{unit('N m/rad')}",
     ]
-    print_table(
-        f"{spec.name}: {worst_of(analysis.impedance)}", columns, [*map(cells, analysis.impedance)]
-    )
-    for line in marks(analysis.impedance):
+    print_table(f"{name}: {_worst_of(items)}", columns, [*map(_cells, items)])
+    for line in _marks(items):
         say(line)
-    for line in meanings(analysis.impedance):
+    _print_basis(items)
+    judged = [(item.name, found) for item in items for found in item.responses]
+    for controller, found in judged:
+        say(f"{controller}: {found.key}, {found.wanted}: {found.ends.upper()}: {found.said}")
+    if judged:
+        detail(RESPONSE_MEANING)
+
+
+def _cells(item: ImpedanceAnalysis) -> list[str]:
+    """Return the row of a controller; `_marks` says what the marks mean."""
+    from nrs_design.design.measures import MARGINS
+
+    at_arm, beside = item.limit_at_arm, ""
+    if at_arm is not None and math.isfinite(at_arm):
+        beside = f"\n{_limit(at_arm)} N/m at {item.lever_arm:g} m"
+    return [
+        item.name,
+        f"{item.Mt:.6g}{'*' * ('Mt' in item.on_bound)}",
+        f"{item.Bt:.6g}{'*' * ('Bt' in item.on_bound)}",
+        f"{item.cost:.4f}",
+        *(f"{item.shown(measure).text}{'!' * (measure in item.unusual)}" for measure in MARGINS),
+        f"{_limit(item.lowest_limit)}{beside}",
+    ]
+
+
+def _limit(value: float) -> str:
+    """Write a limit of stiffness, rounded down."""
+    if math.isnan(value):
+        return "not computed"
+    return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
+
+
+def _worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
+    """Say over what the margins of a table are the worst."""
+    from nrs_design.design.measures import MARGINS
+
+    if all(
+        one.proved is not None or one.everywhere for i in items for one in map(i.shown, MARGINS)
+    ):
+        return "the worst over all ranges"
+    return "the worst at the corners of all ranges"
+
+
+def _print_basis(items: Sequence[ImpedanceAnalysis]) -> None:
+    """Print which margins are proved of all controllers, and what the others are."""
+    from nrs_design.api.optimum import meanings
+    from nrs_design.design.measures import MARGINS
+
+    for line in meanings(items):
         detail(line)
-    if not wants_details():
-        say(basis(analysis.impedance))
+    proved = [m.title for m in MARGINS if all(m.title in item.proved_titles for item in items)]
+    shown = "all margins" if len(proved) == len(MARGINS) else ", ".join(proved)
+    if wants_details():
+        return
+    if proved:
+        say(f"Proved over all values of the ranges: {shown}; the rest is floating point (-v).")
+    else:
+        say("Margins: floating point at the corners of all ranges, not a proof (-v says more).")
+
+
+def _marks(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
+    """Yield what the marks mean, as far as there are any."""
+    from nrs_design.design.measures import MARGINS
+
+    if any(item.on_bound for item in items):
+        yield "* on its bound: the range of the spec has chosen it, not the cost"
+    if found := [m for m in MARGINS if any(m in item.unusual for item in items)]:
+        said = ", ".join(f"{measure.title} {measure.usual}" for measure in found)
+        yield f"! not as usual ({said}); a goal says what is accepted"

@@ -12,7 +12,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
 from time import monotonic
 from typing import Any, TextIO
@@ -20,7 +20,7 @@ from typing import Any, TextIO
 from nrs_design.printable import json_text, printable
 
 _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
-# Seconds after which a command that still works says so, where it shows no spinner.
+# Seconds between the steps that are told where there is no spinner.
 SILENCE = 10.0
 # Columns of a line where there is no terminal, and COLUMNS does not say otherwise.
 WIDTH = 100
@@ -85,11 +85,11 @@ def taking_json() -> Iterator[list[str]]:
         _taken.reset(token)
 
 
-def say(line: str = "", *, verdict: str = "") -> None:
+def say(line: str = "", *, verdict: str = "", hanging: int = 2) -> None:
     """Print one line of the result; the verdict in it, in capitals, is coloured on a terminal."""
     if not wants_text():
         return
-    text = wrapped(printable(line), sys.stdout)
+    text = wrapped(printable(line), sys.stdout, hanging)
     word = verdict.upper()
     print(text.replace(word, painted(word, COLOURS[verdict], sys.stdout), 1) if word else text)
 
@@ -153,38 +153,19 @@ def progress(title: str, *, lines: bool = False) -> Iterator[Callable[[str], Non
         yield lambda step: None
         return
     if not sys.stderr.isatty():
-        with _spoken(title, lines=lines) as tell:
-            yield tell
+        told = start = monotonic()
+
+        def tell(step: str) -> None:
+            nonlocal told
+            now = monotonic()
+            if lines or now - told > SILENCE:
+                told = now
+                note(f"{title}: {step} ({now - start:.0f} s)")
+
+        yield tell
         return
     from rich.console import Console
     from rich.markup import escape
 
     with Console(stderr=True).status(title) as status:
         yield lambda step: status.update(f"{title}: {escape(printable(step))}")
-
-
-@contextmanager
-def _spoken(title: str, *, lines: bool) -> Iterator[Callable[[str], None]]:
-    """Say now and then which step it is, so that whoever reads a log sees that it goes on."""
-    from threading import Event, Thread
-
-    current, ended, start = [title], Event(), monotonic()
-
-    def tell(step: str) -> None:
-        current[0] = f"{title}: {step}"
-        if lines:
-            note(current[0])
-
-    def speak() -> None:
-        # A reader that has gone ends the command where it prints its result.
-        with suppress(OSError):
-            while not ended.wait(SILENCE):
-                note(f"{current[0]} ({monotonic() - start:.0f} s)")
-
-    speaker = Thread(target=speak, daemon=True)
-    speaker.start()
-    try:
-        yield tell
-    finally:
-        ended.set()
-        speaker.join()

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Sequence
-from contextlib import ExitStack
+import csv
+import io
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from pathlib import Path
-from time import perf_counter
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 import typer
 
+from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.exit_codes import worst
-from nrs_design.cli.options import SpecFile, refuse_both
-from nrs_design.cli.printing import note, progress, wants_json
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from nrs_design.cli.sweep_point import Job, PointAnswer
+    from nrs_design.cli.sweep_point import Job
+    from nrs_design.sweeps.answers import PointAnswer
+    from nrs_design.sweeps.table import Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
 SWEPT = (
@@ -36,8 +41,16 @@ SWEPT = (
     "robot balance",
     "robot correction",
 )
-# How many seconds are told as minutes, and minutes as hours.
-_LONG = 120.0
+# What a terminal shows of rows, columns and messages; --csv and --json hold them all.
+MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES = 200, 6, 5
+# What an answer without a verdict is called, by its exit code.
+WORDS = {
+    exit_codes.PROVED: "met",
+    exit_codes.REFUTED: "missed",
+    exit_codes.USAGE: "wrong",
+    exit_codes.INCONCLUSIVE: "inconclusive",
+    exit_codes.INTERNAL: "defect",
+}
 
 
 @command("sweep", passes_on=True)
@@ -60,22 +73,14 @@ def sweep(
             "count '1..250/16 N*m/rad'. Up to three times: every combination is a point.",
         ),
     ],
-    store: Annotated[
+    resume: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", help="Folder of answers; default NAME.sweep beside the file of the spec."
+            metavar="FILE",
+            help="Keep every answer in this file as it comes; the same command goes on from it.",
         ),
     ] = None,
-    no_store: Annotated[bool, typer.Option("--no-store", help="Keep no answers.")] = False,
     jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            metavar="SCHEDULER",
-            help="Let the workers of this dask.distributed scheduler compute, such as "
-            "tcp://10.0.0.1:8786; they must share this folder and the store.",
-        ),
-    ] = None,
     shown: Annotated[
         list[str] | None,
         typer.Option(
@@ -91,8 +96,8 @@ def sweep(
 ) -> Answer:
     """Run a command for every combination of values of one to three fields of a spec.
 
-    Answers are kept: the same command goes on where it was cut off. What is kept as proved or
-    refuted is used again only if its certificate is checked again, and holds.
+    What a file of --resume holds as proved or refuted is used again only if its certificate is
+    checked again, and holds.
 
     The exit code is that of the worst point: 4 before 2 before 1 before 3 before 0.
 
@@ -101,51 +106,23 @@ def sweep(
 
     Example: nrs-design sweep SPEC --set 'limits.bandwidth=1,2 Hz' --jobs 2 --show Bt optimize
     """
-    from nrs_design.cli.sweep_answer import facts_of, table_text, view_of
+    from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
+    from nrs_design.sweeps.grid import read_grid
+    from nrs_design.sweeps.table import chosen
 
-    refuse_both(
-        ("--store", "--no-store", store is not None and no_store),
-        ("--jobs", "--dask", jobs > 1 and dask is not None),
-        ("--no-store", "--dask", no_store and dask is not None),
-    )
     if table is not None:
         check_place(table, SWEEP)
-    with ExitStack() as stack:
-        if no_store:
-            folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        else:
-            folder = store or _beside(spec)
-        job = _job(spec, fields, words, folder)
-        points = _points(job, jobs, dask)
-        if table is not None:
-            write_output(table, table_text(job, points), replaces=SWEEP)
-            note(f"table written to {table}")
-        facts = facts_of(job, points) if wants_json() else {}
-        show = view_of(job, points, shown or ())
-    return Answer(lambda: facts, show, worst({point.code for point in points}))
-
-
-def _beside(spec: Path) -> Path:
-    """Return the store of a spec that is named after its file."""
-    from nrs_design.gating.find_specs import SUFFIXES
-    from nrs_design.spec.task_space import file_of
-
-    file = file_of(spec)
-    ending = next((end for end in SUFFIXES if file.name.lower().endswith(end)), file.suffix)
-    return file.with_name(f"{file.name[: len(file.name) - len(ending)]}.sweep")
-
-
-def _job(spec: Path, fields: Sequence[str], words: Sequence[str], folder: Path) -> Job:
-    """Return what is done at every point; refuse what could be done at none."""
-    from nrs_design.cli.sweep_point import Job
-    from nrs_design.sweeps.grid import read_grid
-    from nrs_design.sweeps.store import Store
-
     name = _named(words)
-    options = tuple(words[len(name) :])
-    asked = _asked(name, spec, options)
-    return Job(spec, read_grid(spec, fields), name, options, asked, Store(folder))
+    job = Job(spec, read_grid(spec, fields), name, tuple(words[len(name) :]))
+    _check_options(job)
+    found = _Swept.of(job, _points(job, jobs, resume))
+    names = chosen(found.rows, shown) if shown else None
+    if table is not None:
+        write_output(table, found.table(), replaces=SWEEP)
+        note(f"table written to {table}")
+    code = exit_codes.worst({point.code for point in found.points})
+    return Answer(found.facts, lambda: found.show(names), code)
 
 
 def _named(words: Sequence[str]) -> tuple[str, ...]:
@@ -162,62 +139,146 @@ def _named(words: Sequence[str]) -> tuple[str, ...]:
     )
 
 
-def _asked(name: tuple[str, ...], spec: Path, options: tuple[str, ...]) -> tuple[str, ...]:
-    """Return a command and its options however they were typed, and refuse those it has not."""
+def _check_options(job: Job) -> None:
+    """Refuse options that the command has not, and files."""
     from nrs_design.cli.sweep_point import program_of
 
-    found, given = program_of(name[0]), [str(spec), *options]
-    for word in name:
+    found = program_of(job.command[0])
+    for word in job.command:
         found = getattr(found, "commands", {}).get(word, found)
-    context = found.make_context(" ".join(name), given)
-    said = []
-    for parameter, value in sorted(context.params.items()):
-        if context.get_parameter_source(parameter).name == "DEFAULT" or parameter == "quiet":
-            continue
-        values = value if isinstance(value, list | tuple) else (value,)
-        if parameter in ("spec", "specs"):
-            if len(values) > 1:
-                raise NrsDesignError(
-                    "the command of a sweep names no spec of its own",
-                    remedy="leave it out behind COMMAND",
-                )
-        elif any(isinstance(part, Path) for part in values):
+    name = " ".join(job.command)
+    for value in found.make_context(name, [str(job.spec), *job.options]).params.values():
+        files = [one for one in (value if isinstance(value, list) else [value])
+                 if isinstance(one, Path)]  # fmt: skip
+        if files not in ([], [job.spec]):
             raise NrsDesignError(
-                f"{' '.join(name)} takes no file at the points of a sweep",
-                remedy="leave that option out: a point depends on its spec and on options alone, "
-                "and its answer is in the store",
+                f"{name} takes no file at the points of a sweep, and no spec of its own",
+                remedy="leave it out: a point depends on its spec and on options alone",
             )
-        else:
-            said.append(f"{parameter}={[*map(str, values)]}")
-    return (*name, *said)
 
 
-def _points(job: Job, jobs: int, dask: str | None) -> list[PointAnswer]:
+def _points(job: Job, jobs: int, file: Path | None) -> list[PointAnswer]:
     """Compute what is not there, and return all points in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
-    from nrs_design.sweeps.spread import map_in_processes, spread_by_dask
+    from nrs_design.processes import map_in_processes
+    from nrs_design.sweeps.answers import add_answer, read_answers
 
-    work, every = partial(answer_point, job), range(job.grid.count)
-    coming = (
-        map_in_processes(work, every, jobs) if dask is None else spread_by_dask(work, every, dask)
-    )
+    there = {} if file is None else read_answers(file)
+    points = [(values, there.get(values)) for values in job.grid.points]
     found: dict[int, PointAnswer] = {}
-    computed, start = 0, perf_counter()
-    with progress(f"{job.grid.count} points") as step:
-        for index, point in coming:
-            found[index] = point
-            computed += not point.reused
-            # What was there already says nothing about how long the rest takes.
-            each = (perf_counter() - start) / max(computed, 1)
-            step(f"{len(found)} done, {_duration(each * (len(every) - len(found)))} left")
-    took = _duration(perf_counter() - start)
-    note(f"{computed} computed, {len(found) - computed} were there: {took}")
-    return [found[index] for index in every]
+    computed = 0
+    with progress(f"{len(points)} points") as step:
+        for at, answer in map_in_processes(partial(answer_point, job), points, jobs):
+            found[at] = answer
+            if answer != points[at][1]:
+                computed += 1
+                if file is not None and answer.error is None:
+                    add_answer(file, answer)
+            step(f"{len(found)} done")
+    note(f"{computed} computed, {len(found) - computed} were there")
+    return [found[at] for at in range(len(points))]
 
 
-def _duration(seconds: float) -> str:
-    """Write a time as people read it."""
-    if seconds < _LONG:
-        return f"{seconds:.0f} s"
-    minutes = seconds / 60
-    return f"{minutes:.0f} min" if minutes < _LONG else f"{minutes / 60:.1f} h"
+@dataclass(frozen=True, slots=True)
+class _Swept:
+    """What a sweep has found: the same for any number of processes."""
+
+    job: Job
+    points: Sequence[PointAnswer]
+    rows: Sequence[Row]  # Facts of each point
+
+    @classmethod
+    def of(cls, job: Job, points: Sequence[PointAnswer]) -> Self:
+        from nrs_design.sweeps.table import flat
+
+        return cls(job, points, [dict(flat(point.result or {})) for point in points])
+
+    def facts(self) -> dict[str, Any]:
+        """Return the content of the JSON document."""
+        from nrs_design.spec.load import read_axes
+
+        return {
+            "spec": str(self.job.spec),
+            "spec_sha256": [axis.sha256 for axis in read_axes(self.job.spec)],
+            "command": [*self.job.command, *self.job.options],
+            "fields": [field.path for field in self.job.grid.fields],
+            "points": [
+                {
+                    "values": list(point.values),
+                    "exit_code": point.code,
+                    "result": point.result,
+                    "error": point.error,
+                }
+                for point in self.points
+            ],
+        }
+
+    def table(self) -> str:
+        """Return all facts as CSV: a row for each point, a column for each number or word."""
+        from nrs_design.sweeps.table import facts_in
+
+        text, names = io.StringIO(), facts_in(self.rows)
+        writer = csv.writer(text, lineterminator="\n")
+        heads = [f"{f.path} [{f.unit}]" if f.unit else f.path for f in self.job.grid.fields]
+        writer.writerow(["point", "exit_code", "message", *heads, *names])
+        for at, (point, row) in enumerate(zip(self.points, self.rows, strict=True)):
+            facts = [row.get(name) for name in names]
+            writer.writerow([at, point.code, _message(point), *self._values(point), *facts])
+        return text.getvalue()
+
+    def show(self, wanted: list[str] | None) -> None:
+        """Print what was set, how it ended, and some facts; by default those that differ."""
+        from nrs_design.sweeps.table import cell_text, telling
+
+        # How it ended has a column of its own.
+        names = wanted or [name for name in telling(self.rows) if name != "verdict"]
+        names, more = (names, []) if wanted else (names[:MOST_COLUMNS], names[MOST_COLUMNS:])
+        columns = [f"{f.path}\n{f.unit}" if f.unit else f.path for f in self.job.grid.fields]
+        ends = [
+            str(row.get("verdict", WORDS[point.code]))
+            for point, row in zip(self.points, self.rows, strict=True)
+        ]
+        say(f"{self.job.spec}: {' '.join((*self.job.command, *self.job.options))}")
+        print_table(
+            "",
+            [*columns, "answer", *names],
+            [
+                (*self._values(point), end, *(cell_text(row.get(name)) for name in names))
+                for point, end, row in zip(self.points[:MOST_ROWS], ends, self.rows, strict=False)
+            ],
+        )
+        counts = ", ".join(f"{count} {word}" for word, count in Counter(ends).items())
+        say(f"{len(self.points)} points: {counts}")
+        if len(self.points) > MOST_ROWS:
+            say(f"{len(self.points) - MOST_ROWS} more rows: --csv FILE holds them all")
+        if more:
+            say(f"more facts differ (--show NAME, or --csv FILE for all): {', '.join(more)}")
+        for line in islice(self._messages(), MOST_MESSAGES):
+            say(line)
+
+    def _values(self, point: PointAnswer) -> list[str]:
+        """Return the values of a point, without the unit where that stands above them."""
+        return [
+            _number(text.removesuffix(f" {field.unit}")) if field.unit else text
+            for field, text in zip(self.job.grid.fields, point.values, strict=True)
+        ]
+
+    def _messages(self) -> Iterator[str]:
+        """Yield what is wrong, with the values of the first point of which it is said."""
+        paths = [field.path for field in self.job.grid.fields]
+        said = {_message(point): point for point in reversed(self.points) if point.error}
+        for message, point in reversed(said.items()):
+            where = ", ".join(f"{p}={text}" for p, text in zip(paths, point.values, strict=True))
+            yield f"{WORDS[point.code]}: {where}: {message}"
+
+
+def _number(text: str) -> str:
+    """Write a ratio as a decimal."""
+    from nrs_design.spec import parse_exact
+
+    return f"{float(parse_exact(text)):.10g}" if "/" in text else text
+
+
+def _message(point: PointAnswer) -> str:
+    faults = () if point.error is None else point.error["faults"]
+    return "; ".join(fault["message"] for fault in faults)

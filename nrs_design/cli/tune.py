@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.api.optimum import Optimum, goals_summary, motion_summary
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.tables import print_blocks
-from nrs_design.facts.design import goals_summary, motion_summary
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ def tune(spec: SpecFile) -> Answer:
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
     from nrs_design.errors import DesignError
-    from nrs_design.pipeline.design import run_analysis
     from nrs_design.pipeline.runs import run_interaction
 
     loaded = take_spec(spec)
@@ -41,10 +40,10 @@ def tune(spec: SpecFile) -> Answer:
                 remedy="nrs-design optimize chooses the gains of impedance controllers",
                 at=(*designed.spec.drives,),
             )
-        analysis = run_analysis(designed)
+        shown = Optimum(designed)
+        analysis = shown.analysis
     return design_answer(
-        designed,
-        analysis,
+        shown,
         analysis.tuned,
         lambda: _summary(designed.design, analysis),
         lambda: _print(designed, analysis),

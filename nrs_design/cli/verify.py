@@ -10,11 +10,9 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.printing import is_quiet, say, wants_details
-from nrs_design.errors import CertificateError, NrsDesignError
+from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
     from nrs_design.exporters.deployed import DeployedFiles
@@ -62,11 +60,6 @@ def verify(
     """
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
-    if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
-        raise CertificateError(
-            "the arguments are swapped",
-            remedy=f"the certificate comes first: nrs-design verify {spec} {certificate}",
-        )
     outcome, loaded = _verify(certificate, spec)
     checked = outcome.certificate if outcome.fault is None else None
     found = _deployed(deployed, loaded, checked)
@@ -75,10 +68,10 @@ def verify(
     brief = is_quiet()
 
     def facts() -> dict[str, Any]:
-        from nrs_design.facts.verification import verification_facts
+        from nrs_design.api.recheck import Recheck
 
         return {
-            **verification_facts(outcome, certificate, spec),
+            **Recheck(certificate, spec, outcome).to_dict(),
             "verdict": verdict,
             "deployed": None if deployed is None else str(deployed),
             "differences": None if found is None else list(found.differences),
@@ -194,26 +187,3 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
 
     if found := ", ".join(map(" ".join, designed_gains(spec, certificate.gains))):
         say(f"  as recorded, within what the spec allows, not designed again (gate does): {found}")
-    if spec.sampling is not None:
-        _print_sampled_derivative(certificate, spec.sampling.period.exact)
-
-
-def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> None:
-    """Say which Kd a program has that multiplies by Kd/T, where that is another one."""
-    from nrs_design.certificates.units import gain_units
-    from nrs_design.controllers.float32 import exact_decimal
-    from nrs_design.controllers.gains import MOTION
-    from nrs_design.controllers.laws import ProportionalDerivative
-    from nrs_design.spec import parse_exact
-
-    gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
-    if not gains:
-        return  # The robot closes its own motion loop.
-    motion = ProportionalDerivative.of(gains)
-    factor = motion.over(period)
-    if factor * period != motion.Kd:
-        units = gain_units(certificate)[MOTION]
-        say(
-            f"  {MOTION}: a program multiplies by Kd/T = {exact_decimal(factor)} {units['Kp']}, "
-            f"which makes its Kd about {float(factor * period):.10g} {units['Kd']}"
-        )

@@ -29,10 +29,10 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
 from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
 from nrs_design.pipeline.scenarios import run_judgement
+from nrs_design.processes import map_in_processes
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
-from nrs_design.sweeps.spread import map_in_processes
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis

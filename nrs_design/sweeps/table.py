@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TypeAlias
 
 from nrs_design.errors import NrsDesignError
@@ -42,39 +41,34 @@ def _called(item: object, at: int) -> str:
     return named if isinstance(named, str) and named else str(at)
 
 
-@dataclass(frozen=True, slots=True)
-class Columns:
-    """The facts of all points."""
-
-    every: tuple[str, ...]  # In the order in which they are met
-    telling: tuple[str, ...]  # Those that differ from point to point, and are short
+def facts_in(rows: Sequence[Row]) -> list[str]:
+    """Return the names of all facts, in the order in which they are met."""
+    return list(dict.fromkeys(name for row in rows for name in row))
 
 
-def fact_columns(rows: Iterable[Row]) -> Columns:
-    """Return the facts of all rows; each row is looked at once, and not kept."""
-    first: dict[str, Cell] = {}
-    differ, long = set[str](), set[str]()
-    for count, row in enumerate(rows):
-        for name, value in row.items():
-            if count and name not in first:
-                differ.add(name)
-            if first.setdefault(name, value) != value:
-                differ.add(name)
-            if isinstance(value, str) and len(value) > SHORT:
-                long.add(name)
-        differ |= first.keys() - row.keys()
-    telling = [n for n in first if n in differ - long and not n.endswith(_EXACT)]
-    # What is said at the top says most.
-    return Columns(tuple(first), tuple(sorted(telling, key=lambda name: name.count("."))))
+def telling(rows: Sequence[Row]) -> list[str]:
+    """Return the facts that differ from answer to answer and are short, the topmost first."""
+    rows = [row for row in rows if row]
+    found = [
+        name
+        for name in facts_in(rows)
+        if not name.endswith(_EXACT)
+        and len({row.get(name) for row in rows}) > 1
+        and all(
+            isinstance(row.get(name), float) or len(str(row.get(name))) <= SHORT for row in rows
+        )
+    ]
+    return sorted(found, key=lambda name: name.count("."))
 
 
-def chosen(columns: Columns, wanted: Sequence[str]) -> list[str]:
+def chosen(rows: Sequence[Row], wanted: Sequence[str]) -> list[str]:
     """Return the facts that are asked for, each by its whole name, or by how the shortest end."""
     found: list[str] = []
     for name in wanted:
-        named = [one for one in columns.every if one == name or one.endswith(f".{name}")]
+        every = facts_in(rows)
+        named = [one for one in every if one == name or one.endswith(f".{name}")]
         if not named:
-            told = [*columns.telling, *columns.every]
+            told = [*telling(rows), *every]
             raise NrsDesignError(
                 f"no answer has a fact {quoted(name)}", remedy=did_you_mean(name, told, "there are")
             )
@@ -82,19 +76,6 @@ def chosen(columns: Columns, wanted: Sequence[str]) -> list[str]:
         least = min(one.count(".") for one in named)
         found += [one for one in named if one.count(".") == least]
     return list(dict.fromkeys(found))
-
-
-def short_names(names: Sequence[str]) -> list[str]:
-    """Return the shortest ending of each dotted name that no other one has."""
-    return [_ending(name, names) for name in names]
-
-
-def _ending(name: str, names: Sequence[str]) -> str:
-    parts = name.split(".")
-    ends = (".".join(parts[at:]) for at in range(len(parts) - 1, -1, -1))
-    return next(
-        end for end in ends if end == name or sum(f".{n}".endswith(f".{end}") for n in names) == 1
-    )
 
 
 def cell_text(value: Cell) -> str:

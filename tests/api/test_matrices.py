@@ -96,12 +96,8 @@ def test_wrong_input_is_told_in_words(arguments, said):
 def test_wrong_options():
     with pytest.raises(SpecError, match="two ends"):
         nrs.certify([[["k"]]], parameters={"k": 3})
-    with pytest.raises(SpecError) as caught:
-        nrs.certify([[["-1 - k"]]])
-    assert caught.value.remedy == "name what is uncertain: parameters={'k': (lowest, highest)}"
-    with pytest.raises(SpecError, match="comma") as caught:
+    with pytest.raises(SpecError, match="comma"):
         nrs.certify([[["1,5"]]])
-    assert "parameters" not in str(caught.value.remedy)
     with pytest.raises(SpecError, match="time"):
         nrs.certify([[[-1]]], time="now")
     with pytest.raises(SpecError, match="there is no mode"):

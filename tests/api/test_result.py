@@ -97,4 +97,3 @@ def test_words_and_units_are_those_of_the_axis():
     assert labels == ["Torque [N]", "Deflection [mm]", "Velocity [mm/s]"]
     optimum = study.optimize()
     assert optimum.to_dict()["controllers"][0]["units"]["Bt"] == "N*s/m"
-    assert r"\mathrm{N\,s/m}" in optimum.latex()

@@ -25,7 +25,6 @@ peak: float = optimum.margins["withdrawal"]["max_sensitivity_peak"]
 
 decision: nrs.Decision = study.certify(budget=30)
 P: NDArray[np.float64] | None = decision.P
-tex: str = decision.latex()
 figure: Figure = decision.plot("run", width="ieee")
 
 simulation: nrs.Simulation = study.simulate("shaken")

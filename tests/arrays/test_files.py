@@ -54,13 +54,13 @@ def test_one_matrix_alone(tmp_path):
         ("a.json", b'{"P": [[1]]}', "holds no modes"),
         ("a.json", b'{"P": [[1]], "A": []}', "holds no modes"),
         ("a.json", b'{"P": [[1]], "A": [[1]], "A1": [[1]]}', "both `A` and numbered"),
-        ("a.json", b'{"P": [[1]], "A": [[1]], "time": "now"}', "`time` is not known"),
+        ("a.json", b'{"P": [[1]], "A": [[1]], "time": "now"}', "`time` is neither"),
         ("a.json", b'{"P": [[NaN]], "A": [[1]]}', "not a finite number"),
         ("a.json", b"\xff", "cannot be read"),
         ("a.json", b'{"P": [[1]], "A%s": [[1]]}' % (b"1" * 5000), "is not known here"),
         ("a.json", b'{"P": [[1]], "A": [%s1]}' % (b"1," * 200_000), "more than 200000 entries"),
         ("a.json", b'{"P": [[1]], "A": [%s[]]}' % (b"[]," * 600_000), "more than 1000000 values"),
-        ("a.json", b" " * (16 * 2**20 + 1), "is larger than"),
+        ("a.json", b" " * (16 * 2**20 + 1), "larger than"),
         ("a.npz", b"PK", "are not read"),
         ("a.mat", b"MATLAB", "are not read"),
         ("a.txt", b"", "are not read"),
@@ -79,5 +79,5 @@ def test_an_empty_row_is_a_matrix_of_none(tmp_path):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(DataError, match="is not a file"):
+    with pytest.raises(DataError, match="No such file"):
         read_proposal(tmp_path / "a.json")

@@ -14,7 +14,6 @@ def test_one_entry(tmp_path, name):
     said = " ".join(out.split())
     assert entry.explanation in said
     assert entry.remedy in said
-    assert max(map(len, out.split("\n"))) <= 88
 
 
 def test_list(tmp_path):

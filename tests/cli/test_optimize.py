@@ -1,6 +1,6 @@
 """`nrs-design optimize`, as a user types it."""
 
-from tests.support import ROOT, SOFT_TISSUE, document_of, run
+from tests.support import SOFT_TISSUE, document_of, run
 
 
 def write(tmp_path, text):
@@ -22,15 +22,3 @@ def test_one_sensitivity_peak_for_one_controller(tmp_path):
         worst = {goal["goal"]: goal["worst"] for goal in controller["goals"]}
         assert controller["sensitivity_peak"] == worst["max_sensitivity_peak"]
         assert controller["delay_margin_s"] == worst["min_delay_margin"]
-
-
-GOALS = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
-
-
-def test_line_ends_are_kept(tmp_path):
-    text = GOALS.read_text(encoding="utf-8").replace("\n", "\r\n")
-    (tmp_path / "a.nrs.yaml").write_bytes(text.encode())
-    run("optimize", "a.nrs.yaml", "--out", "b.nrs.yaml", "-q", cwd=tmp_path, code=0)
-    written = (tmp_path / "b.nrs.yaml").read_bytes()
-    assert b"\r\r" not in written
-    assert written.count(b"\n") == written.count(b"\r\n")

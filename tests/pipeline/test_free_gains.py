@@ -16,8 +16,6 @@ from nrs_design.design.laws.law import Task
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.free_gains import gain_branches
-from nrs_design.pipeline.gain_coordinate import with_gains
-from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from tests.support import SOFT_TISSUE
@@ -59,18 +57,12 @@ def test_the_least_cost_is_at_a_corner_of_the_motion_gains():
     assert gains.at_bounds(x) == (("motion Kp", "upper"), ("motion Kd", "lower"))
 
 
-def test_a_point_is_the_design_of_what_is_written():
+def test_a_recheck_takes_freed_gains_within_their_factors():
     designed = freed(PD, MASS)
     gains = branch(designed)
     one = next(iter(gains.roundings(gains.optimum())))
     own = gains.shipping(one, one.x)
-    found = run_design(with_gains(designed, one.written)).design
-    assert found.laws["insertion"] == own.laws["insertion"]
-    for gain in ("Kp", "Kd"):
-        exact, near = float(found.motion.gains[gain]), float(own.motion.gains[gain])
-        assert exact == pytest.approx(near, rel=2e-7)
     assert "motion Kp = " in gains.said(one.x)
-    # A re-check takes freed gains within their factors, and no others.
     texts = gains_of(own)
     assert design_from_gains(designed.spec, texts) == own
     texts["motion"]["Kp"] = str(2 * int(designed.design.motion.Kp))

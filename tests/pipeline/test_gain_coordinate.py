@@ -3,7 +3,6 @@
 from fractions import Fraction
 from math import log
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,13 +10,12 @@ from nrs_design.pipeline.gain_coordinate import (
     GainCoordinate,
     bounded_gain,
     freed_gains,
-    with_gains,
 )
-from nrs_design.pipeline.runs import run_design, run_interaction
+from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.support import ROOT
 
-from .free import FORCE, freed
+from .free import freed
 
 ZERO = Fraction(0)
 
@@ -62,37 +60,6 @@ def test_bounds_of_the_spec_and_factors():
     (Kp,) = freed_gains(designed)
     assert Kp.name == ("motion", "Kp")
     assert Kp.high == Fraction("1.6") * designed.design.motion.Kp
-
-
-def test_written_motion_gains_are_those_that_ship():
-    designed = freed("motion: {Kp: {min: 0.6, max: 1.6}, Kd: {min: 0.6, max: 1.6}}")
-    written = {("motion", "Kp"): "187770 rpm/rad", ("motion", "Kd"): "2987.5 rpm*s/rad"}
-    loaded = with_gains(designed, written)
-    found = run_design(loaded).design.motion
-    assert (found.Kp, found.Kd) == (187770, Fraction("2987.5"))
-    # Factors would be on other gains from now on; comments stay.
-    assert loaded.spec.design.free == {}
-    assert "# The thesis prints three digits." in loaded.text
-    assert loaded.spec.design.significant_digits == 3
-
-
-def test_one_motion_gain_leaves_the_other():
-    designed = freed("motion: {Kd: {min: 0.6, max: 1.6}}")
-    loaded = with_gains(designed, {("motion", "Kd"): "1500 rpm*s/rad"})
-    found = run_design(loaded).design.motion
-    assert found.Kd == 1500
-    assert float(found.Kp) == pytest.approx(float(designed.design.motion.Kp), rel=1e-7)
-
-
-def test_a_force_gain_takes_the_place_of_what_it_was_chosen_by(tmp_path):
-    text = FORCE.read_text(encoding="utf-8")
-    text = text.replace("proportional_gain: 0.02 rad/(N*m)", "damping_ratio: 0.741")
-    (tmp_path / "a.nrs.yaml").write_text(text, encoding="utf-8")
-    designed = run_interaction(read_spec(tmp_path / "a.nrs.yaml"), "")
-    loaded = with_gains(designed, {("force", "Kp"): "0.0138 rad/(N*m)"})
-    given = loaded.spec.controllers["force"]
-    assert given.proportional_gain.text == "0.0138 rad/(N*m)"
-    assert given.damping_ratio is None
 
 
 def test_an_example_that_is_free_in_nothing_is_left(tmp_path):

@@ -1,12 +1,13 @@
-"""Points of a sweep, in one order."""
+"""Points of a sweep, in one order, exactly as a spec writes them."""
 
 from itertools import product
 
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.sweeps.grid import read_grid
+from nrs_design.sweeps.grid import parse_values, read_grid
 from tests.support import COMMUTING, SOFT_TISSUE
+from tests.tables import rows
 
 LEVER = "environments.soft.lever_arm=0.2,0.3 m"
 STIFFNESS = "environments.soft.stiffness=100..400/4 N/m"
@@ -15,10 +16,8 @@ STIFFNESS = "environments.soft.stiffness=100..400/4 N/m"
 def test_every_combination_once_and_the_last_field_fastest():
     grid = read_grid(SOFT_TISSUE, [LEVER, STIFFNESS])
     stiffness = [f"{value} N/m" for value in (100, 200, 300, 400)]
-    assert [grid.texts(at) for at in range(grid.count)] == list(
-        product(["0.2 m", "0.3 m"], stiffness)
-    )
-    assert grid.changes(0) == (
+    assert grid.points == list(product(["0.2 m", "0.3 m"], stiffness))
+    assert grid.changes(grid.points[0]) == (
         (("environments", "soft", "lever_arm"), "0.2 m"),
         (("environments", "soft", "stiffness"), "100 N/m"),
     )
@@ -26,7 +25,7 @@ def test_every_combination_once_and_the_last_field_fastest():
 
 def test_items_of_lists_are_counted_from_0():
     grid = read_grid(COMMUTING, ["modes.1.A.0.0=-1,-2"])
-    assert grid.changes(1) == ((("modes", 1, "A", 0, 0), "-2"),)
+    assert grid.changes(grid.points[1]) == ((("modes", 1, "A", 0, 0), "-2"),)
 
 
 def test_the_unit_above_a_column():
@@ -40,15 +39,30 @@ def test_the_unit_above_a_column():
         (["stiffness=1 N/m"], "did you mean environments.soft.stiffness"),
         (["sampling.delay=1"], "write one of kind, name"),
         (["limits.torqe=1 N*m"], "did you mean limits.torque"),
-        (["environments.soft.zzzzzzzzzzzzzzzzzzzz=1 N*m"], "below environments.soft"),
+        (["environments.soft.zzzzzzzzzzzzzzzzzzzz=1 N*m"], "write one of environments.soft"),
         ([], "one to 3 fields, not 0"),
         ([LEVER] * 4, "one to 3 fields, not 4"),
-        (
-            ["limits.torque=1..1001/1001 N*m", STIFFNESS, "limits.bandwidth=1..250 Hz"],
-            "1001 x 4 x 250",
-        ),
+        (["limits.torque=1..1001/5001 N*m", STIFFNESS], "5001 x 4 points"),
+        (["limits.torque"], "sets nothing"),
     ],
 )
 def test_what_makes_no_grid(said, message):
     with pytest.raises(SpecError, match=message):
         read_grid(SOFT_TISSUE, said)
+
+
+@pytest.mark.parametrize(("text", "values"), rows(__file__, "test_values"))
+def test_values(text, values):
+    assert list(parse_values(text)) == values
+
+
+REFUSED = (
+    "|,|1,|2..1/3 N|1..1/2 N|1..2/0 N|1..2/99999 N|1..2/1|1..2|1...2 N|a..b|1..2/-3|1..|[1, 2]"
+    "|1,2,1 N"
+)
+
+
+@pytest.mark.parametrize("text", REFUSED.split("|"))
+def test_what_has_no_values_is_refused(text):
+    with pytest.raises(SpecError):
+        parse_values(text)

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.sweeps.table import cell_text, chosen, fact_columns, flat, short_names
+from nrs_design.sweeps.table import cell_text, chosen, facts_in, flat, telling
 
 
 def test_items_are_called_by_their_names():
@@ -27,23 +27,15 @@ def test_a_fact_tells_if_it_differs_and_is_short():
         {"same": 1, "rate": 0.2, "said": "b" * 30, "rate_exact": "1/5", "late": 1},
         {"same": 1, "rate": 0.2, "late": 1},
     ]
-    columns = fact_columns(iter(rows))
-    assert columns.every == ("same", "rate", "said", "rate_exact", "late")
-    assert columns.telling == ("rate", "late")
-    assert fact_columns([]).every == ()
+    assert facts_in(rows) == ["same", "rate", "said", "rate_exact", "late"]
+    assert telling(rows) == telling([*rows, {}]) == ["rate", "late"]
 
 
 def test_facts_are_chosen_by_how_they_end():
-    columns = fact_columns(
-        [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
-    )
-    assert chosen(columns, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
+    rows = [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
+    assert chosen(rows, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
     with pytest.raises(NrsDesignError, match="no answer has a fact 'Bx'"):
-        chosen(columns, ["Bx"])
-
-
-def test_the_shortest_names_that_differ():
-    assert short_names(["c.a.Bt", "c.b.Bt", "cost", "Bt"]) == ["a.Bt", "b.Bt", "cost", "Bt"]
+        chosen(rows, ["Bx"])
 
 
 def test_cells():

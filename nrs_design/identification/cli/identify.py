@@ -13,7 +13,6 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import detail, insist, progress, say, wants_details
 from nrs_design.cli.tables import print_table
@@ -49,7 +48,6 @@ class ModelOption(StrEnum):
 T = TypeVar("T")
 
 identify = typer.Typer(
-    cls=CommandGroup,
     no_args_is_help=True,
     help="Identify actuator, tissue or delay from measured records, with 95 % intervals.",
     epilog="Data are text (CSV and the like), with columns named by quantity and unit, "

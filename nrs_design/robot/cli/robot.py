@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import typer
 
-from nrs_design.cli.groups import CommandGroup
 from nrs_design.robot.cli.balance import balance
 from nrs_design.robot.cli.check import check
 from nrs_design.robot.cli.correction import correction
@@ -14,7 +13,6 @@ from nrs_design.robot.cli.track import track
 
 robot = typer.Typer(
     name="robot",
-    cls=CommandGroup,
     no_args_is_help=True,
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
     epilog="The page of a robot: nrs-design report SPEC.",

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import typer
 
-from nrs_design.cli.groups import CommandGroup
 from nrs_design.ros2.cli.check import check
 from nrs_design.ros2.cli.export import export
 
 ros2 = typer.Typer(
     name="ros2",
-    cls=CommandGroup,
     no_args_is_help=True,
     help="Check and write the parameters of controllers of ROS 2; no ROS is needed.",
 )

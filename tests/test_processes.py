@@ -1,0 +1,21 @@
+"""Work on several processes: each point once, and a worker that dies is no silence."""
+
+import os
+from functools import partial
+
+import pytest
+
+from nrs_design.errors import NrsDesignError
+from nrs_design.processes import map_in_processes
+from tests.work import killed, square
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_every_point_comes_once(jobs):
+    found = list(map_in_processes(square, [3, 4, 5], jobs))
+    assert sorted(found) == [(0, 9), (1, 16), (2, 25)]
+
+
+def test_a_worker_that_dies_ends_in_an_error():
+    with pytest.raises(NrsDesignError, match="fewer --jobs"):
+        list(map_in_processes(partial(killed, os.getpid()), range(2), 2))

@@ -113,17 +113,6 @@ _MOST = 1e6
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
 
 
-def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
-    """Return which spec every locked certificate file belongs to, as real paths."""
-    return {
-        Path(os.path.realpath(file.parent / entry.certificate.file)): Path(
-            os.path.realpath(file.parent / entry.path)
-        )
-        for entry in lock.specs
-        if entry.certificate is not None
-    }
-
-
 def recorded_in(lock: Lock, file: Path) -> Mapping[Path, Recorded]:
     """Return the certificate of every locked spec, by the absolute path of it."""
     return {

@@ -20,7 +20,6 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import CertificateError, DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
-from nrs_design.gating.pages import is_current, note_page, page_fingerprint
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
@@ -35,8 +34,8 @@ from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.spread import map_in_processes
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.search.certification import Limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,10 +45,8 @@ class Files:
     folder: Path  # For all of them
     html: bool = True  # Whether reports are asked for, of what is new or not fulfilled
     every_page: bool = False  # Whether they are of all specs
-    # Which spec a certificate file is locked for, as real paths.
-    locked: Mapping[Path, Path] = field(default_factory=dict)
     # The certificate that is locked for a spec, by the absolute path of the spec.
-    recorded: Mapping[Path, Recorded] = field(default_factory=dict)
+    locked: Mapping[Path, Recorded] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -58,7 +55,7 @@ class Files:
     def recorded_for(self, loaded: LoadedSpec) -> Recorded:
         """Return the certificate that is locked for a spec; else where it would be."""
         beside = Recorded(self.certificate(loaded.spec.name))
-        return self.recorded.get(Path(os.path.abspath(loaded.path)), beside)
+        return self.locked.get(Path(os.path.abspath(loaded.path)), beside)
 
     def report(self, name: str) -> Path:
         """Return the report file of the spec of that name."""
@@ -68,9 +65,12 @@ class Files:
         """Refuse to write files of that name where they are those of another spec."""
         check_owner(spec, name, self.folder)
         file = self.certificate(name)
-        owner = self.locked.get(Path(os.path.realpath(file)))
-        if owner is not None and file_of(owner).is_file() and owner != Path(os.path.realpath(spec)):
-            raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
+        place, own = os.path.realpath(file), os.path.realpath(spec)
+        for owner, kept in self.locked.items():
+            locked = kept.file.name == file.name and os.path.realpath(kept.file) == place
+            if locked and file_of(owner).is_file() and os.path.realpath(owner) != own:
+                message = f"is locked for {os.path.relpath(owner)}"
+                raise OutputError(message, path=file, remedy=REMEDY)
 
 
 def run_gate(
@@ -198,10 +198,10 @@ def _examine(
     )
     page = files.report(loaded.spec.name)
     fulfilled = all(item.fulfilled for item in obligations)
-    # A page that is there must be one of this spec.
-    if files.every_page or (files.html and (kept is None or not fulfilled or page.exists())):
+    as_recorded = kept is not None and fulfilled and _is_of(page, certificate)
+    if files.every_page or (files.html and not as_recorded):
         progress("report")
-        _write_page(result, page, limits, analysis, blocked)
+        _write_page(result, page, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
         return replace(outcome, recorded=recorded)
@@ -258,21 +258,19 @@ def _holds(file: Path, id_: str, origin: str) -> bool:
     return said == (id_, origin) and find_altered(document) is None
 
 
+def _is_of(page: Path, certificate: Certificate | None) -> bool:
+    """Tell whether a page is not there, or names this certificate: to draw it anew takes long."""
+    if not page.exists() or certificate is None:
+        return not page.exists()
+    return certificate.id.encode() in page.read_bytes()
+
+
 def _write_page(
-    result: Result,
-    page: Path,
-    limits: Limits,
-    analysis: DesignAnalysis | None,
-    blocked: Blocked | None,
+    result: Result, page: Path, analysis: DesignAnalysis | None, blocked: Blocked | None
 ) -> None:
-    """Draw the page of a spec, unless the one that is there is just this."""
-    origin = origin_of(result.loaded.path, page)
-    made = page_fingerprint(result, limits, origin)
-    if is_current(page, made):
-        return
     # Drawing costs seconds to import; a run without reports must not pay for it.
     from nrs_design.reporting import build_report, render_html
 
+    origin = origin_of(result.loaded.path, page)
     html = render_html(build_report(result, analysis, blocked=blocked), origin)
     write_output(page, html, replaces=PAGE)
-    note_page(page, made)

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import read_lock_if_any
-from nrs_design.gating.renew import certificates_of, recorded_in, write_lock
+from nrs_design.gating.renew import recorded_in, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.certification import Overrides
 
@@ -28,12 +28,7 @@ def gate(project, monkeypatch):
         searched.clear()
         lock = project / "nrs.lock"
         known = read_lock_if_any(lock)
-        files = Files(
-            folder=project / folder,
-            html=False,
-            locked=certificates_of(known, lock),
-            recorded=recorded_in(known, lock),
-        )
+        files = Files(folder=project / folder, html=False, locked=recorded_in(known, lock))
         specs = find_specs([project / f"specs/{name}.nrs.yaml"])
         outcome = run_gate(specs, files, overrides=Overrides(**overrides))
         write_lock(outcome, lock)

@@ -9,7 +9,7 @@ from nrs_design.errors import CertificateError, OutputError
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.obligations import Caution
-from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
+from nrs_design.gating.renew import check_folder, make_lock, recorded_in, write_lock
 from nrs_design.output import alone_in
 
 from .conftest import gate_of
@@ -99,9 +99,8 @@ def test_certificates_that_a_lock_could_not_name(project, folder, lock):
 
 
 def test_whose_a_locked_certificate_is(project):
-    found = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
-    name = project / "reports/stable.cert.json"
-    assert found[name.resolve()] == (project / "specs/stable.nrs.yaml").resolve()
+    found = recorded_in(read_lock(project / "nrs.lock"), project / "nrs.lock")
+    assert found[project / "specs/stable.nrs.yaml"].file == project / "reports/stable.cert.json"
 
 
 def test_the_lock_does_not_change_with_comments_and_line_ends(project):

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.gating.lock import read_lock
-from nrs_design.gating.required import find_missing
+from nrs_design.gating.locked import find_missing
 from nrs_design.spec import read_spec
 from tests.support import ROOT, SOFT_TISSUE
 

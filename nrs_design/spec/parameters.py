@@ -7,9 +7,8 @@ from fractions import Fraction
 from typing import Annotated
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.affine import Affine
 from nrs_design.spec.exact import parse_exact
-from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
+from nrs_design.spec.expression import EXPRESSION_PATTERN, Affine, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.model import ParsedBy, SpecModel, optional, pair_schema, required

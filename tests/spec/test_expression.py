@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.spec.affine import Affine
-from nrs_design.spec.expression import MAX_LENGTH, parse_affine
+from nrs_design.spec.expression import MAX_LENGTH, Affine, parse_affine
 from tests.tables import rows
 
 from .samples import message_of

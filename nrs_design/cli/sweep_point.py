@@ -22,7 +22,7 @@ from nrs_design.cli.printing import taking_json
 from nrs_design.errors import CertificateError, ClockError, NrsDesignError
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.document import Data
-from nrs_design.spec.instead import saying_instead
+from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.claims import is_shown

@@ -27,8 +27,8 @@ from nrs_design.spec.document import (
     steps_to,
     to_data,
 )
+from nrs_design.spec.edits import as_read
 from nrs_design.spec.faults import MAX_LISTED, did_you_mean
-from nrs_design.spec.instead import as_read
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.places import faults_between, file_faults
 from nrs_design.spec.task_space import (

@@ -12,10 +12,9 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Mapping, Node, Scalar, parse_document, read_source
 from nrs_design.spec.document import Sequence as Items
-from nrs_design.spec.edits import Keys, node_at
+from nrs_design.spec.edits import Edit, Keys, node_at, saying_instead
 from nrs_design.spec.exact import is_number
 from nrs_design.spec.faults import did_you_mean
-from nrs_design.spec.instead import Change, saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.spec.units import parse_unit
@@ -60,7 +59,7 @@ class Grid:
             texts.append(field.values[at])
         return tuple(reversed(texts))
 
-    def changes(self, index: int) -> tuple[Change, ...]:
+    def changes(self, index: int) -> tuple[Edit, ...]:
         """Return what the spec of a point says in the place of what its file says."""
         texts = self.texts(index)
         return tuple((field.at, text) for field, text in zip(self.fields, texts, strict=True))

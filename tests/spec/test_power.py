@@ -7,7 +7,7 @@ from flint import arb, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.spec.power import DIGITS, power_between
+from nrs_design.spec.preload import DIGITS, power_between
 
 F = Fraction
 bases = st.fractions("1/1000", 1000, max_denominator=1000)

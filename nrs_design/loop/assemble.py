@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.operating import OperatingConditions
+    from nrs_design.spec.build_plant import OperatingConditions
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 

@@ -29,7 +29,7 @@ from nrs_design.spec.model import (
     pair_schema,
     required,
 )
-from nrs_design.spec.range_checks import RANGE_CHECKS, range_around
+from nrs_design.spec.parameters import RANGE_CHECKS, range_around
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
 FINEST = 1000

@@ -24,7 +24,7 @@ from nrs_design.spec.model import (
     pair_schema,
     required,
 )
-from nrs_design.spec.parameters import Switch
+from nrs_design.spec.parameters import BOUND_CHECKS, RANGE_CHECKS, Switch, range_around
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -32,7 +32,6 @@ from nrs_design.spec.quantity import (
     is_less,
     parse_quantity,
 )
-from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS, range_around
 
 Reader = Callable[[object], Quantity]
 

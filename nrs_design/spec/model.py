@@ -61,7 +61,7 @@ class SpecModel(BaseModel):
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:
-        run_checks(self.checks, self, self.warnings)
+        run_checks(self.checks, self)
         return self
 
 

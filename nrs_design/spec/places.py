@@ -73,7 +73,7 @@ def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> t
 
 def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
     """Return the faults between parts of a spec; checks of parts that it lacks are left out."""
-    contexts = find_faults(spec.checks, spec, spec.warnings, partial=True)
+    contexts = find_faults(spec.checks, spec, partial=True)
     details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
     return _in_file_order((details | {"ctx": c} for c in contexts), model, root)
 

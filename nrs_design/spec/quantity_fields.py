@@ -51,16 +51,13 @@ def read_quantity(
             bound = "positive" if positive else "zero or positive"
             raise SpecError(
                 f"{quoted(quantity.text)} must be {bound}",
-                remedy="check the sign" if quantity.value else _above_zero(kind),
+                remedy="check the sign"
+                if quantity.value
+                else f"write a number above zero{kind.such}",
             )
         return quantity
 
     return reported(read, *at)
-
-
-def _above_zero(kind: QuantityKind) -> str:
-    such = "" if kind.is_about_commands else f", such as {kind.example!r}"
-    return f"write a number above zero{such}"
 
 
 def quantity_schema(kind: QuantityKind) -> dict[str, Any]:

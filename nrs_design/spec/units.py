@@ -180,16 +180,6 @@ _OPERATORS: Operators[Unit] = {
 }
 
 
-def respelt(text: str) -> str | None:
-    """Return a unit with known symbols for those that are not; None if it has only known ones.
-
-    A symbol that resembles none stays as it is.
-    """
-    if UNITS.keys() >= {*_SYMBOL.findall(text)}:
-        return None
-    return _SYMBOL.sub(lambda found: _guess(found[0]) or found[0], text)
-
-
 def _guess(symbol: str) -> str | None:
     """Return what is probably meant by a symbol that is no unit."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]

@@ -118,7 +118,7 @@ def _write_spec(spec: LoadedSpec, text: str) -> None:
 def check_beside(loaded: LoadedSpec, out: Path) -> None:
     """Refuse a place for a changed spec at which the files that it names are not found."""
     from nrs_design.errors import OutputError
-    from nrs_design.gating.recorded import hash_followed
+    from nrs_design.gating.lock import hash_followed
 
     beside = os.path.realpath(out.parent) == os.path.realpath(loaded.path.parent)
     if hash_followed(loaded) and not beside:

@@ -99,7 +99,7 @@ def _defect(error: Exception) -> dict[str, Any]:
 
 
 def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
-    from nrs_design.gating.recorded import hash_followed
+    from nrs_design.gating.lock import hash_followed
 
     means: tuple[Data, ...] = tuple((axis.sha256, {**hash_followed(axis)}) for axis in axes)
     return key_of(means, job.asked, __version__)

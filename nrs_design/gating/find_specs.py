@@ -30,7 +30,14 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     """
     found: dict[str, Path] = {}
     for path in paths:
-        for spec in _specs_of(path):
+        specs = sorted(_specs_below(path)) if os.path.isdir(path) else [path]
+        if not specs:
+            raise NrsDesignError(
+                f"there is no *{SUFFIXES[0]} in this folder",
+                path=path,
+                remedy="name a spec file or a folder with specs",
+            )
+        for spec in specs:
             found.setdefault(os.path.realpath(spec), spec)
     return tuple(axis for spec in sorted(found.values()) for axis in _axes_at(spec))
 
@@ -90,19 +97,6 @@ def _reads_like_a_spec(file: Path) -> bool:
         return _KIND.search(text) is not None
     kind = root.entries.get("kind") if isinstance(root, Mapping) else None
     return isinstance(kind, Scalar) and kind.text in SPEC_KINDS
-
-
-def _specs_of(path: Path) -> list[Path]:
-    if not os.path.isdir(path):
-        return [path]
-    specs = sorted(_specs_below(path))
-    if not specs:
-        raise NrsDesignError(
-            f"there is no *{SUFFIXES[0]} in this folder",
-            path=path,
-            remedy="name a spec file or a folder with specs",
-        )
-    return specs
 
 
 def _specs_below(root: Path) -> Iterator[Path]:

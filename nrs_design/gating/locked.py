@@ -12,7 +12,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
-from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
+from nrs_design.gating.lock import Lock, LockedSpec, hash_recorded, relative_to_lock
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -21,7 +21,6 @@ from nrs_design.gating.obligations import (
     Status,
     failed,
 )
-from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import (
     GOAL,
     LOCKED,

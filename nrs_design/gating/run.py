@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,9 +20,8 @@ from nrs_design.certificates.prove import find_altered, read_document
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import CertificateError, DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
-from nrs_design.gating.paths import is_utf8
-from nrs_design.gating.recorded import hash_recorded
+from nrs_design.gating.lock import hash_recorded
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed, is_utf8
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
@@ -36,6 +36,9 @@ from nrs_design.sweeps.spread import map_in_processes
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
+
+
+_Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,12 +89,13 @@ def run_gate(
     """
     read = [_read(path) for path in specs]
     valid = [item for item in read if isinstance(item, LoadedSpec)]
-    task = _Task(files, overrides, _namesakes(valid), tuple(one.path for one in valid))
+    examine = partial(_examine_safely, files, overrides, _namesakes(valid))
     found: dict[Path, SpecOutcome] = {}
     if jobs == 1:
-        found = {one.path: task.examine(one, progress) for one in valid}
+        found = {one.path: examine(one, progress) for one in valid}
     else:
-        for _, outcome in map_in_processes(task.examine_next, range(len(valid)), jobs):
+        work = partial(_examine_next, examine, [one.path for one in valid])
+        for _, outcome in map_in_processes(work, range(len(valid)), jobs):
             found[outcome.path] = outcome
             progress(f"{len(found)} of {len(valid)} specs")
     return GateOutcome(
@@ -99,33 +103,29 @@ def run_gate(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
-    """What is done with every spec, in any process."""
+def _examine_safely(
+    files: Files,
+    overrides: Overrides | None,
+    namesakes: Mapping[Path, Path],
+    loaded: LoadedSpec,
+    progress: Progress,
+) -> SpecOutcome:
+    """Return what is found about a spec, whatever goes wrong with it."""
+    namesake, name = namesakes.get(loaded.path), loaded.spec.name
+    try:
+        if namesake is not None:
+            raise _shared_name(loaded, namesake)
+        with about(getattr(loaded.spec, "axis", None)):
+            return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
+    except Exception as error:
+        # One spec must not keep the others from being examined, whatever goes wrong with it.
+        return failed(loaded.path, error, loaded.sha256)
 
-    files: Files
-    overrides: Overrides | None
-    namesakes: Mapping[Path, Path]  # Another spec of the same name, for those that have one
-    specs: tuple[Path, ...]
 
-    def examine(self, loaded: LoadedSpec, progress: Progress) -> SpecOutcome:
-        """Return what is found about a spec, whatever goes wrong with it."""
-        namesake, name = self.namesakes.get(loaded.path), loaded.spec.name
-        try:
-            if namesake is not None:
-                raise _shared_name(loaded, namesake)
-            with about(getattr(loaded.spec, "axis", None)):
-                return _examine(
-                    loaded, self.files, lambda s: progress(f"{name}: {s}"), self.overrides
-                )
-        except Exception as error:
-            # One spec must not keep the others from being examined, whatever goes wrong with it.
-            return failed(loaded.path, error, loaded.sha256)
-
-    def examine_next(self, index: int) -> SpecOutcome:
-        """Return what is found about a spec, which is read here."""
-        read = _read(self.specs[index])
-        return read if isinstance(read, SpecOutcome) else self.examine(read, silent)
+def _examine_next(examine: _Examine, paths: Sequence[Path], index: int) -> SpecOutcome:
+    """Return what is found about a spec, which is read here."""
+    read = _read(paths[index])
+    return read if isinstance(read, SpecOutcome) else examine(read, silent)
 
 
 def _read(path: Path) -> LoadedSpec | SpecOutcome:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.gating.paths import from_here, is_utf8, relative_uri
+from nrs_design.gating.obligations import from_here, is_utf8, relative_uri
 
 NAMES = st.text(st.characters(exclude_characters="/\0", codec="utf-8"), min_size=1).filter(
     lambda name: name not in (".", "..")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from nrs_design.gating.obligations import Caution, GateOutcome, Obligation
-from nrs_design.gating.paths import from_here
+from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, from_here
 from nrs_design.printable import printable
 from nrs_design.spec.task_space import file_of
 

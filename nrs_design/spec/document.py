@@ -127,10 +127,8 @@ def read_source(path: Path) -> str:
 def _read_bytes(path: Path) -> bytes:
     refused = partial(SpecError, path=path)
     try:
-        if path.is_dir():
-            raise refused("this is a directory", remedy="name a *.nrs.yaml file in it")
         if path.exists() and not path.is_file():
-            raise refused("this is not a regular file", remedy="name a *.nrs.yaml file")
+            raise refused("this is not a file", remedy="name a *.nrs.yaml file")
         with open_regular(path) as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:

@@ -27,7 +27,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Positive, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ExpandedBy, SpecModel, optional, required
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.motion import (
     ActuatorSpec,
     FollowingSpec,
@@ -44,7 +44,7 @@ from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import MonitoringSpec, SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
-from nrs_design.spec.threshold_logic import ThresholdLogicSpec, check_type
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 from nrs_design.spec.units import THESIS_COMMAND
 
 MAX_ENTRIES = 64
@@ -184,7 +184,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         "state of the contact: the deflection, which stays continuous when the stiffness switches",
         "deflection",
     )
-    mode_logic: Annotated[ThresholdLogicSpec, ExpandedBy(check_type)] | None = optional(
+    mode_logic: ThresholdLogicSpec | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give",
         unsaid="most",

@@ -128,8 +128,8 @@ def test_size_limit_is_inclusive(tmp_path: Path) -> None:
     ("name", "said"),
     [
         ("none.nrs.yaml", "no such file"),
-        (".", "directory"),
-        ("pipe", "not a regular file"),
+        (".", "not a file"),
+        ("pipe", "not a file"),
         ("run.csv", "this is a table, not a spec"),
         ("run.tsv", "this is a table, not a spec"),
     ],

@@ -7,7 +7,6 @@ from tests.tables import edited, spec_text
 
 from .samples import (
     SWITCHED,
-    refusal,
     spoiled,
     switched,
 )
@@ -38,5 +37,3 @@ def test_several_resets_from_one_mode_to_another() -> None:
     other = "  - {from: a, to: b, map: [[2, 0], [0, 1]]}\n"
     spec = switched(spec_text("resets") + other)
     assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b"), ("a", "b")]
-    error = refusal(spec_text("resets") + other + spoiled(other, "[2, 0]", "[2.0, 0]"))
-    assert "this reset is listed twice" in error.message

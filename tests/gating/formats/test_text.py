@@ -1,8 +1,7 @@
 import re
 from html import unescape
 
-from nrs_design.gating.formats.markdown import to_markdown
-from nrs_design.gating.formats.text import to_text
+from nrs_design.gating.formats.text import to_markdown, to_text
 from tests.gating.formats.support import GAINS, HOSTILE, obligation, outcome_of
 
 

@@ -7,8 +7,6 @@ take the way of `gate`; `report` and `export` with a certificate, that of `run_r
 import json
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.goals import certified_goals
@@ -131,26 +129,3 @@ def test_ages_beyond_the_declared_ones_are_checked(tmp_path):
 def test_all_commands_agree_on_the_example(tmp_path):
     path = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
     assert agreed(path, tmp_path) == {"decay_rate": True, "delay": True}
-
-
-@settings(max_examples=max(6, settings.default.max_examples // 2))
-@given(
-    low=st.integers(200, 900),
-    rate=st.sampled_from(["0.5", "2", "5", "9"]),
-    delay=st.sampled_from(["", ", delay: 2 ms", ", delay: 4 ms"]),
-    contact=st.sampled_from(["losable", "kept"]),
-    digits=st.integers(3, 6),
-    least=st.sampled_from(["0", "0.01"]),
-)
-def test_all_commands_agree_on_any_design(
-    tmp_path_factory, low, rate, delay, contact, digits, least
-):
-    folder = tmp_path_factory.mktemp("drawn")
-    changes = ALONE | {
-        "STIFFNESS": f"{{nominal: {low + 20} N/m, range: [{low} N/m, {low + 50} N/m]}}",
-        "MASSES": CASE["MASSES"].replace("0.01", least),
-        "DIGITS": str(digits),
-        "CONTACT": contact,
-        "GOALS": f"decay_rate: {rate} 1/s{delay}",
-    }
-    agreed(written(folder, **changes), folder)

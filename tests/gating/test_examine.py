@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -69,15 +68,6 @@ def test_numbers_that_are_too_large_leave_a_mode_undecided(examiner, time):
     assert "too large to decide" in mode.message
 
 
-def test_a_proof_covers_modes_that_nobody_could_decide(examiner):
-    _, evidence = genuine("common-quadratic")
-    digits = family([[-ENDLESS]])
-    claimed = SimpleNamespace(
-        shows=evidence.shows, shown=lambda system: evidence.shows, claim=lambda system: "proved"
-    )
-    assert examiner.stability(digits, (claimed,), "")[0].status is Status.PROVED
-
-
 @pytest.mark.parametrize(
     ("entry", "status", "words"),
     [
@@ -100,12 +90,6 @@ def test_growth_says_what_it_leaves_open(examiner):
     said = [item.message for item in examiner.stability(system, (), "")]
     assert said[0].endswith("growth for which the environment would have to pull")
     assert said[1].endswith("growth of free motion, until it comes to the surface")
-
-
-def test_a_certificate_holds_or_is_rejected(examiner):
-    held, rejected = (examiner.certificate(Path("a/b.json"), fault) for fault in (None, "altered"))
-    assert (held.status, held.message) == (Status.MET, "a/b.json holds, checked exactly")
-    assert (rejected.status, rejected.message) == (Status.MISSED, "a/b.json is rejected: altered")
 
 
 def ranges(highest, limit):
@@ -304,10 +288,3 @@ def test_modes_and_goals_stand_where_their_spec_says_them(tmp_path):
     assert given.keys_of_mode(given.loaded.spec.modes[1].name) == ("modes", 1)
     assert tissue.keys_of_goal("insertion", "min_gain_margin") == ("goals", "min_gain_margin")
     assert tissue.keys_of_goal("withdrawal", "min_gain_margin")[0] == "controllers"
-
-
-def test_what_is_not_written_out_stands_where_its_holder_does(examiner):
-    place = examiner.loaded.place
-    assert place("modes", 99) == place("modes")
-    assert place("design") == place()
-    assert examiner.loaded.text.split("\n")[place("switching").line - 1].startswith("switching")

@@ -10,7 +10,6 @@ from nrs_design.gating.obligations import (
     Obligation,
     SpecOutcome,
     Status,
-    count_by_verdict,
     failed,
 )
 from nrs_design.gating.rules import INTERNAL, MODE_STABLE, SPEC
@@ -74,17 +73,3 @@ def test_an_error_in_another_file_has_no_line_in_this_one(path, line, words):
     error = SpecError("wrong", path=path, line=7, column=3, remedy="do it right")
     (found,) = failed(PATH, error).obligations
     assert (found.line, found.message, found.status) == (line, words, Status.ERROR)
-
-
-def test_specs_are_counted_by_verdict_or_by_why_there_is_none():
-    specs = [
-        SpecOutcome(PATH, (), verdict="proved"),
-        SpecOutcome(PATH, (), verdict="proved"),
-        SpecOutcome(PATH, ()),
-        SpecOutcome(PATH, (), certifiable=False),
-    ]
-    assert count_by_verdict(specs) == {
-        "proved": 2,
-        "without verdict": 1,
-        "with nothing to certify": 1,
-    }

@@ -1,7 +1,4 @@
-import contextlib
 import os
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -143,15 +140,6 @@ def test_refuses_what_is_no_file_of_a_spec(tmp_path: Path, name: str, said: str)
         read_source(tmp_path / name)
 
 
-def test_refuses_names_that_no_file_can_have(tmp_path: Path) -> None:
-    loop = tmp_path / "loop.nrs.yaml"
-    loop.symlink_to(loop)
-    for path in (Path("a\0b"), tmp_path / ("x" * 5000), loop):
-        with pytest.raises(SpecError) as caught:
-            read_source(path)
-        assert caught.value.path == path
-
-
 def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.nrs.yaml"
     path.write_text("a: 1\n")
@@ -163,36 +151,6 @@ def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("nrs_design.spec.document.open_regular", refuse)
     with pytest.raises(SpecError, match="cannot be read: Permission denied"):
         read_source(path)
-
-
-def seconds(text: str) -> float:
-    """Time that a text takes to be parsed or refused, the best of three."""
-    times = []
-    for _ in range(3):
-        start = time.process_time()
-        with contextlib.suppress(SpecError):
-            parse_document(text)
-        times.append(time.process_time() - start)
-    return min(times)
-
-
-# Each grows with the square of the length in some parser, or did in this one.
-GROWING = {
-    "a key of digits": lambda n: "? " + "0" * n + "x\n: 1\n",
-    "keys of digits": lambda n: "".join(f"? {'0' * 900}{i}x\n: 1\n" for i in range(n // 900)),
-    "a tag": lambda n: "a: " + "!" * n,
-    "words": lambda n: "a: " + "a " * (n // 2),
-    "spaces": lambda n: "a:" + " " * n + "1",
-    "empty lines": lambda n: "\n" * n + "a: 1",
-    "items": lambda n: "a: [" + "a," * (n // 8) + "a]",
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("make", GROWING.values(), ids=GROWING)
-def test_time_grows_no_faster_than_the_text(make: Callable[[int], str]) -> None:
-    # Eight times the text: eight times the time, or sixty-four if it grew with the square.
-    assert seconds(make(2**16)) < 30 * max(seconds(make(2**13)), 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -213,10 +171,6 @@ def test_nodes_are_counted_where_no_comma_or_line_tells(monkeypatch: pytest.Monk
     monkeypatch.setattr("nrs_design.spec.document.MAX_NODES", 4)
     assert to_data(parse_document("- - - a")) == ((("a",),),)
     assert "more than 4 keys" in refused("- - - - a").message
-
-
-def test_the_longest_text_is_read() -> None:
-    assert to_data(parse_document("a: " + "x" * MAX_SCALAR)) == {"a": "x" * MAX_SCALAR}
 
 
 def test_a_decimal_comma_hides_what_would_be_said_of_its_halves(tmp_path: Path) -> None:
@@ -248,12 +202,6 @@ def test_one_place_is_changed_and_the_order_stays(at, said, after):
     # The order of keys counts: modes and controllers are numbered by it.
     assert list(data) == list(after)
     assert to_data(root) == to_data(parse_document(TEXT))
-
-
-def test_everything_keeps_its_position():
-    root = changed(parse_document(TEXT), ("a", "b"), "2 m")
-    assert node_at(root, ("d",)) == node_at(parse_document(TEXT), ("d",))
-    assert node_at(root, ("a", "b")).position == node_at(parse_document(TEXT), ("a", "b")).position
 
 
 @pytest.mark.parametrize("at", [("e",), ("a", "c", 2), ("d", "b"), ("a", 0)])

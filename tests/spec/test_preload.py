@@ -36,23 +36,6 @@ def test_box_of_an_exact_power():
     assert b == Interval(F(1), F(1, 8), F(8))
 
 
-def test_tangent_of_the_models():
-    """The nominal values are the tangent of the law at `about`; the box holds it everywhere."""
-    law = HuntCrossley(1.054, 15.158, 1.2)  # thesis table 2.5
-    k, b = law.tangent(0.2)
-    exponent = ExponentSpec(nominal=F("1.2"))
-    box = power_box(
-        Interval.point(F(k)), Interval.point(F(b)), exponent, (F("0.1") / F("0.2"), F("1.5"))
-    )
-    for deflection in (0.1, 0.15, 0.2, 0.3):
-        stiffness, damping = law.tangent(deflection)
-        assert box[0].low <= stiffness <= box[0].high * (1 + 1e-12)
-        assert box[1].low * (1 - 1e-12) <= damping <= box[1].high * (1 + 1e-12)
-    assert float(box[0].high) == pytest.approx(law.tangent(0.3)[0])
-    # Not the tangent at the low end, but the chord from the surface to it.
-    assert float(box[0].low) == pytest.approx(law.tangent(0.1)[0] / 1.2)
-
-
 shares = st.floats(0, 1)
 
 

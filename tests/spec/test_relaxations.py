@@ -133,18 +133,6 @@ def test_a_longer_dwell_time_than_the_one_declared():
     assert Fraction("2.76") < Fraction(line.weakest.value_at(line.weakest.size - 1)[:-2]) < 3
 
 
-def test_identified_ranges_lose_what_was_said_of_them():
-    """A range that was cut by hand does not hold what identification found."""
-    covers = "    lever_arm: 0.24 m\n    range_covers: tolerance\n"
-    text = TEXT.replace("    lever_arm: 0.24 m\n", covers)
-    values = parse_spec(text).environments["soft"].values_id()
-    text = text.replace(covers, f"{covers}    range_id: {values}\n")
-    spec = loaded(text)
-    assert spec.spec.environments["soft"].range_id == values
-    soft = at_least(spec, lines_of(spec)[STIFFNESS]).spec.environments["soft"]
-    assert (soft.fixed, soft.range_id, soft.range_covers) == (True, None, None)
-
-
 def test_given_gains_of_all_controllers_change_together():
     """Bounds move as one; a gain that is designed from something else is not given."""
     lines = calmer(loaded(TEXT.replace(BT, "Bt: {min: 0.1 N*m*s/rad, max: 1.5 N*m*s/rad")), 2, 4)

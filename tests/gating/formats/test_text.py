@@ -27,11 +27,6 @@ def test_gains_are_shown_by_their_shortest_single_precision_decimals():
     assert "gains" not in to_text(outcome_of(obligation()))
 
 
-def test_one_of_a_kind():
-    assert "1 spec: " in to_text(outcome_of(obligation()))
-    assert "; 1 obligation, " in to_text(outcome_of(obligation()))
-
-
 def test_hostile_text_steers_no_terminal():
     text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
     assert all(line.isprintable() for line in text.split("\n"))

@@ -13,7 +13,6 @@ from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
 from nrs_design.pipeline.runs import run_certification
-from nrs_design.proof.contact import Flights
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching
@@ -82,14 +81,6 @@ def test_a_mode_that_must_be_left_may_be_unstable(examiner, entry, status, words
     first = examiner.stability(system, (), "")[0]
     assert (first.status, first.message) == (status, words)
     assert system.switching != ARBITRARY
-
-
-def test_growth_says_what_it_leaves_open(examiner):
-    growing = family([[1, -1], [1, 1]], [[1, -2], [1, 1]], time=Time.DISCRETE)
-    system = replace(growing, flights=Flights(("m0",), ("m1",)))
-    said = [item.message for item in examiner.stability(system, (), "")]
-    assert said[0].endswith("growth for which the environment would have to pull")
-    assert said[1].endswith("growth of free motion, until it comes to the surface")
 
 
 def ranges(highest, limit):

@@ -9,19 +9,6 @@ from nrs_design.gating.rules import RETIRED
 from tests.tables import table
 
 
-@pytest.mark.slow
-def test_lock_names_specs_and_certificates_relative_to_itself(project):
-    lock = read_lock(project / "nrs.lock")
-    assert [spec.path for spec in lock.specs] == [
-        "specs/soft-tissue.nrs.yaml",
-        "specs/stable.nrs.yaml",
-    ]
-    for spec in lock.specs:
-        certificate = json.loads((project / spec.certificate.file).read_text())
-        assert certificate["id"] == spec.certificate.id
-        assert certificate["spec"]["sha256"] == spec.sha256
-
-
 def test_lock_reads_back(project):
     lock = read_lock(project / "nrs.lock")
     assert Lock.model_validate(json.loads(dump_lock(lock))) == lock
@@ -39,11 +26,6 @@ def document(*entries, **changes):
 
 OLDER = document(schema="nrs-design/lock/1").encode()
 MANY = document(*[{}] * (MAX_SPECS + 1)).encode()
-
-
-def test_the_sample_itself_is_a_lock(tmp_path):
-    (tmp_path / "nrs.lock").write_text(document(ENTRY))
-    assert read_lock(tmp_path / "nrs.lock").specs[0].path == "a.nrs.yaml"
 
 
 @pytest.mark.parametrize("status", ["met", "missed"])

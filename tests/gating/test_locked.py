@@ -46,19 +46,6 @@ def edit_lock(project, edit):
     (project / "nrs.lock").write_text(json.dumps(document))
 
 
-def test_valid_certificate_other_than_the_locked_one(check, project):
-    def scale(document):
-        document["statements"][0]["denominator_log2"] += 1
-
-    new = restated(project / CERTIFICATE, scale)
-    outcome = check()
-    assert broken(outcome) == [("NRS105", "missed")]
-    assert "not the certificate that was locked" in outcome.broken[0].message
-    # Locked by its id, it holds: a scaled function proves the same.
-    edit_lock(project, lambda specs: specs[1]["certificate"].update(id=new))
-    assert check().severity == 0
-
-
 def test_false_certificate_with_a_lock_to_match(check, project):
     def flip(document):
         numerators = document["statements"][0]["nodes"][0]["form"]

@@ -21,12 +21,6 @@ def test_uri_reads_back_as_the_name(name):
     assert uri.isascii()
 
 
-def test_paths_are_relative_to_the_working_folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert from_here(tmp_path / "specs/a b.nrs.yaml") == "specs/a b.nrs.yaml"
-    assert relative_uri(tmp_path / "specs/100% a.nrs.yaml") == "specs/100%25%20a.nrs.yaml"
-
-
 @pytest.mark.parametrize("raw", [b"a\xff.nrs.yaml"])
 def test_a_name_that_is_not_utf8_can_be_told_and_shown(raw):
     path = Path(os.fsdecode(raw))

@@ -22,28 +22,12 @@ def outcome_of(project, *names, reports="reports"):
     return gate_of(project, *specs, reports=reports)
 
 
-def test_lock_elsewhere_names_the_same_files(project):
-    outcome = outcome_of(project, "specs")
-    lock = make_lock(outcome.specs, project / "reports/nrs.lock")
-    assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
-    assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
-
-
 def test_a_remark_on_a_value_without_bound_reads_back(project):
     file, (spec,) = project / "nrs.lock", outcome_of(project, STABLE_SPEC).specs
     far = Caution(spec.path, "Ms unbounded", 1, 1, beyond=math.inf, at=("controllers", "a"))
     file.write_text(dump_lock(make_lock([replace(spec, cautions=(far,))], file)))
     remark = read_lock(file).specs[0].remark
     assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
-
-
-def test_missed_goals_and_gains_are_locked(project):
-    entry = read_lock(project / "nrs.lock").specs[0]
-    assert entry.gains["insertion"]["Bt"] == "2.150000095367431640625"
-    assert [(goal.rule, goal.subject, goal.status) for goal in entry.goals] == [
-        ("NRS103", "insertion", "met"),
-        ("NRS103", "withdrawal", "met"),
-    ]
 
 
 def test_unwritable_lock(project):

@@ -90,15 +90,6 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
     assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)
 
 
-def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
-    spec = tmp_path / "s.nrs.yaml"
-    spec.write_text(STABLE)
-    outcome = gate_of(spec, spec)
-    assert outcome.broken[0].rule.id == "NRS005"
-    assert outcome.broken[0].line is None
-    assert outcome.severity == 3
-
-
 def test_what_is_doubtful_breaks_nothing(examine):
     hand = "environments:\n  hand: {model: elastic, stiffness: 60 N*m/rad}\n"
     text = SOFT_TISSUE.read_text().replace("environments:\n", hand)

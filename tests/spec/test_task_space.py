@@ -44,14 +44,6 @@ def test_places_are_those_of_the_file(write):
     assert rx.place("name").line == 14
 
 
-def test_an_axis_is_what_its_keys_and_those_in_common_say(write, tmp_path):
-    """The order of keys counts in the hash; here it is the same."""
-    (_, rx) = read_axes(write())
-    path = tmp_path / "alone.nrs.yaml"
-    path.write_text(spec_text("one-axis-alone"), encoding="utf-8")
-    assert read_spec(path).sha256 == rx.sha256
-
-
 @pytest.mark.parametrize(
     ("old", "new", "line", "said"), rows(__file__, "test_what_is_wrong_is_told_at_its_place")
 )

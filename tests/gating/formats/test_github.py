@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.gating.formats.github import to_github
-from nrs_design.gating.obligations import Caution, Status
+from nrs_design.gating.obligations import Caution
 from tests.gating.formats.support import obligation, outcome_of
 
 
@@ -28,15 +28,6 @@ def test_warnings_come_after_errors():
         "::warning file=specs/a%2Cb.nrs.yaml,line=3,col=5,title=nrs-design::"
         "Mt is on its bound, 50%25"
     )
-
-
-def test_place_that_is_not_known():
-    line = to_github(outcome_of(obligation(line=None, column=None)))
-    assert "line=1,col=1" in line
-
-
-def test_nothing_to_say():
-    assert to_github(outcome_of(obligation(Status.PROVED))) == ""
 
 
 @given(st.text(), st.text(st.characters(exclude_characters="\0/", codec="utf-8")))

@@ -116,21 +116,9 @@ def not_together(
     return Row(features[0].at, find, message, remedy, features=features)
 
 
-def find_faults(
-    checks: Sequence[Row[Any]], said: object, *, partial: bool = False
-) -> list[dict[str, Any]]:
-    """Return the faults that a table of checks finds.
-
-    `partial`: parts that are not valid may be missing; checks that ask for them are left out.
-    """
-    found: list[dict[str, Any]] = []
-    for check in checks:
-        try:
-            found += [error.context or {} for error in check.faults(said)]
-        except AttributeError:
-            if not partial:
-                raise
-    return found
+def find_faults(checks: Sequence[Row[Any]], said: object) -> list[dict[str, Any]]:
+    """Return the faults that a table of checks finds."""
+    return [error.context or {} for check in checks for error in check.faults(said)]
 
 
 def run_checks(checks: Sequence[Row[Any]], said: object) -> None:

@@ -12,10 +12,9 @@ from pydantic_core import ErrorDetails
 
 from nrs_design.errors import Fault
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import find_faults
 from nrs_design.spec.document import Node, Position, steps_to
 from nrs_design.spec.faults import FAULT, Location, did_you_mean
-from nrs_design.spec.model import ParsedBy, SpecModel
+from nrs_design.spec.model import ParsedBy
 
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type"}
@@ -53,28 +52,14 @@ _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
 def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return what validation reports as faults of the file, each with its place, in file order."""
-    each = (
-        details | {"ctx": context}
+    """Return what validation reports as faults of the file, each once with its place, in order."""
+    resolved = {
+        _resolve(details | {"ctx": context}, model, root)
         for details in _genuine(error)
         for context in details.get("ctx", {}).get("all", [details.get("ctx", {})])
-    )
-    return _in_file_order(each, model, root)
-
-
-def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return the faults between parts of a spec; checks of parts that it lacks are left out."""
-    contexts = find_faults(spec.checks, spec, partial=True)
-    details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
-    return _in_file_order((details | {"ctx": c} for c in contexts), model, root)
-
-
-def _in_file_order(
-    each: Iterable[ErrorDetails], model: type[BaseModel], root: Node
-) -> tuple[Fault, ...]:
-    """Return faults, each once, by line, column and message."""
-    resolved = sorted({_resolve(details, model, root) for details in each})
-    return tuple(Fault(message, line, column, remedy) for line, column, message, remedy in resolved)
+    }
+    each = sorted(resolved)
+    return tuple(Fault(message, line, column, remedy) for line, column, message, remedy in each)
 
 
 def _genuine(error: ValidationError) -> list[ErrorDetails]:

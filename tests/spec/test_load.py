@@ -13,7 +13,6 @@ from nrs_design.spec import SwitchedSystemSpec, load_spec, read_spec
 from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from tests.support import COMMUTING
-from tests.tables import spec_text
 
 from .samples import SWITCHED, refusal
 
@@ -111,31 +110,3 @@ def test_a_spec_pays_for_the_models_of_its_kind_only() -> None:
 def test_every_kind_has_its_model() -> None:
     kinds = {kind: model_of(kind).model_fields["kind"].annotation for kind in SPEC_KINDS}
     assert kinds == {kind: Literal[kind] for kind in SPEC_KINDS}
-
-
-BETWEEN = spec_text("between")
-NO_ENVIRONMENT, NO_CONTROLLER = "there is no environment 'sof'", "there is no controller 'b'"
-
-
-@pytest.mark.parametrize(
-    ("gain", "stiffness", "said"),
-    [
-        ("rad/s/rpm", "N*m/rad", [NO_ENVIRONMENT, NO_CONTROLLER]),
-        ("rad/s", "N*m/rad", ["not an actuator gain", NO_ENVIRONMENT, NO_CONTROLLER]),
-        # Which environments there are is not known until all of them are valid.
-        ("rad/s/rpm", "N*m", ["not a stiffness", NO_CONTROLLER]),
-    ],
-)
-def test_faults_between_valid_parts_are_told_in_the_first_round(gain, stiffness, said) -> None:
-    error = refusal(BETWEEN.replace("GAIN", gain).replace("STIFFNESS", stiffness))
-    assert len(error.faults) == len(said)
-    for fault, words in zip(error.faults, said, strict=True):
-        assert words in fault.message
-
-
-def test_faults_between_valid_parts_of_given_matrices() -> None:
-    text = SWITCHED.replace("kind: switched-system", "kind: switched-system\ntitle: [no]")
-    text = text.replace("switching: arbitrary", "switching: {transitions: [[m, none]]}")
-    messages = [fault.message for fault in refusal(text).faults]
-    assert "title: expected a single value, not a list or a mapping" in messages
-    assert any("there is no mode 'none'" in message for message in messages)

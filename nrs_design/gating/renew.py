@@ -45,28 +45,26 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
     with alone_in(file.parent):
-        return _write_lock(outcome, file, prune=prune)
-
-
-def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome:
-    fresh = make_lock(outcome.specs, file).specs
-    # A spec that is gone keeps its entry.
-    present = (spec for spec in outcome.specs if is_there(spec.path))
-    examined = {relative_to_lock(spec.path, file): spec for spec in present}
-    locked = read_lock_if_any(file).specs
-    old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
-    gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
-    written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
-    # A spec that was renamed: its certificate is now found under the new name of the file.
-    dropped = {e.path for e in old if e.certificate is not None and e.certificate.file in written}
-    if prune:
-        dropped |= gone
-    kept = [entry for entry in old if entry.path not in dropped]
-    if kept or fresh or file.exists():
-        entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
-        if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
-            write_output(file, dump_lock(lock), replaces=LOCK)
-            outcome = outcome.with_note(f"{file} written")
+        fresh = make_lock(outcome.specs, file).specs
+        # A spec that is gone keeps its entry.
+        present = (spec for spec in outcome.specs if is_there(spec.path))
+        examined = {relative_to_lock(spec.path, file): spec for spec in present}
+        locked = read_lock_if_any(file).specs
+        old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
+        gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
+        written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
+        # A spec that was renamed: its certificate is now found under the new name of the file.
+        dropped = {
+            e.path for e in old if e.certificate is not None and e.certificate.file in written
+        }
+        if prune:
+            dropped |= gone
+        kept = [entry for entry in old if entry.path not in dropped]
+        if kept or fresh or file.exists():
+            entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
+            if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
+                write_output(file, dump_lock(lock), replaces=LOCK)
+                outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}
     missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]

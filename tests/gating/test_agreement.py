@@ -18,7 +18,6 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
-from tests.support import ROOT
 from tests.tables import spec_text
 
 from .conftest import gate_of
@@ -124,8 +123,3 @@ def test_ages_beyond_the_declared_ones_are_checked(tmp_path):
         forged = {key: value for key, value in document.items() if key != "ages"}
         forged |= {} if ages is None else {"ages": ages}
         assert said in verify_document(forged | {"id": content_id(forged)}, loaded).fault
-
-
-def test_all_commands_agree_on_the_example(tmp_path):
-    path = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
-    assert agreed(path, tmp_path) == {"decay_rate": True, "delay": True}

@@ -53,15 +53,6 @@ def test_what_still_holds_is_not_searched_for_and_nothing_changes(project, gate,
     assert contents(project) == before
 
 
-def test_gains_that_are_refuted_say_nothing_of_those_that_a_search_chooses(
-    project, gate, monkeypatch
-):
-    monkeypatch.setattr("nrs_design.controllers.gains.steering_goals", lambda spec: ("decay_rate",))
-    (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
-    assert gate("unstable")
-    assert gate("unstable")
-
-
 def test_a_certificate_counts_without_a_lock_and_in_another_folder(project, gate):
     text = (project / "reports/stable.cert.json").read_text()
     lock = (project / "nrs.lock").read_bytes()
@@ -100,13 +91,6 @@ def test_what_does_not_hold_or_is_not_the_locked_one_is_searched_for(project, ga
     restated(project / "reports/stable.cert.json", change)
     assert gate()
     assert (project / "reports/stable.cert.json").read_text() == text
-
-
-def test_other_gains_than_are_recorded_are_searched_for(project, gate, monkeypatch):
-    from nrs_design.pipeline import runs
-
-    monkeypatch.setattr(runs, "is_of_gains", lambda *given: False)
-    assert gate("soft-tissue")
 
 
 def test_a_goal_that_the_certificate_does_not_show_is_searched_for(project, gate):

@@ -115,12 +115,6 @@ def test_refuses_files_that_are_no_text(tmp_path: Path, content: bytes, said: st
     assert error.remedy
 
 
-def test_size_limit_is_inclusive(tmp_path: Path) -> None:
-    path = tmp_path / "a.nrs.yaml"
-    path.write_bytes(b"#" * MAX_BYTES)
-    assert len(read_source(path)) == MAX_BYTES
-
-
 @pytest.mark.parametrize(
     ("name", "said"),
     [
@@ -140,19 +134,6 @@ def test_refuses_what_is_no_file_of_a_spec(tmp_path: Path, name: str, said: str)
         read_source(tmp_path / name)
 
 
-def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text("a: 1\n")
-
-    def refuse(*_: object, **__: object) -> None:
-        raise PermissionError(13, "Permission denied")
-
-    # Permission bits do not bind the superuser, under whom tests may run.
-    monkeypatch.setattr("nrs_design.spec.document.open_regular", refuse)
-    with pytest.raises(SpecError, match="cannot be read: Permission denied"):
-        read_source(path)
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -165,12 +146,6 @@ def test_refuses_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 )
 def test_length_and_number_are_limited(text: str, said: str) -> None:
     assert said in refused(text).message
-
-
-def test_nodes_are_counted_where_no_comma_or_line_tells(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("nrs_design.spec.document.MAX_NODES", 4)
-    assert to_data(parse_document("- - - a")) == ((("a",),),)
-    assert "more than 4 keys" in refused("- - - - a").message
 
 
 def test_a_decimal_comma_hides_what_would_be_said_of_its_halves(tmp_path: Path) -> None:
@@ -202,11 +177,6 @@ def test_one_place_is_changed_and_the_order_stays(at, said, after):
     # The order of keys counts: modes and controllers are numbered by it.
     assert list(data) == list(after)
     assert to_data(root) == to_data(parse_document(TEXT))
-
-
-@pytest.mark.parametrize("at", [("e",), ("a", "c", 2), ("d", "b"), ("a", 0)])
-def test_what_is_not_there_is_nothing(at):
-    assert node_at(parse_document(TEXT), at) is None
 
 
 def test_a_value_in_one_line_is_read_as_it_was():

@@ -85,10 +85,3 @@ def test_spec():
     assert float(environment.stiffness.high / arm) == pytest.approx(984.915, abs=1e-3)
     assert float(environment.parameters["b"].low / arm) == pytest.approx(10 * 0.5**1.3)
     assert float(environment.parameters["b"].high / arm) == pytest.approx(10 * 2**1.3)
-
-
-def test_degrees_cancel():
-    angles = LAW.replace("N/m", "N*m/rad").replace("10 N*s/m", "0.5 N*m*s/rad").replace("mm", "deg")
-    spec = interaction(spoiled(IMPEDANCE, LINEAR + "    lever_arm: 0.24 m\n", angles))
-    stiffness = build_plant(spec).environment("soft").stiffness
-    assert float(stiffness.high) == pytest.approx(800 * 2**0.3)

@@ -43,13 +43,6 @@ def test_order_does_not_depend_on_units(a: Fraction, b: Fraction) -> None:
     assert is_less(newton, millimeter) == (a < b)
 
 
-def test_order_across_powers_of_pi() -> None:
-    assert is_less(Quantity("1 deg", Fraction(1), "deg"), Quantity("1 rad", Fraction(1), "rad"))
-    assert not is_less(
-        Quantity("180 deg", Fraction(180), "deg"), Quantity("3.14 rad", Fraction(314, 100), "rad")
-    )
-
-
 @given(st.text(max_size=60), st.sampled_from(ALL_KINDS))
 def test_garbage_is_a_quantity_or_refused(text: str, kind: QuantityKind) -> None:
     assert message_of(lambda: parse_quantity(text, kind)).isprintable()

@@ -94,14 +94,6 @@ def test_ends_are_rounded_towards_the_nominal_value_and_never_leave_the_range(ce
         last = low, high
 
 
-def test_a_constant_delay_may_be_shorter():
-    line = lines_of(loaded(TEXT + "\nsampling: {period: 2 ms, delay: 2}\n"))["sampling.delay"]
-    assert [line.weakest.value_at(step) for step in range(3)] == ["0", "1", "2"]
-    assert line.weakest.label_at(1) == "1 sample"
-    # Another delay is another loop.
-    assert line.changes_model
-
-
 def test_a_range_of_times_keeps_its_shortest():
     text = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n"
     form = lines_of(loaded(text))["sampling.latency"].weakest
@@ -124,13 +116,6 @@ def test_a_dwell_time_begins_where_every_mode_has_decayed():
     assert times[-1] < Fraction(1, 100)
     assert line.weakest.value_at(line.weakest.size) == "arbitrary"
     assert "switching" not in lines_of(loaded(text))
-
-
-def test_a_longer_dwell_time_than_the_one_declared():
-    text = (ROOT / "specs/examples/geromel-colaneri.nrs.yaml").read_text(encoding="utf-8")
-    line = lines_of(loaded(text))["switching.dwell_time"]
-    assert line.weakest.value_at(line.weakest.size) == "2.76 s"
-    assert Fraction("2.76") < Fraction(line.weakest.value_at(line.weakest.size - 1)[:-2]) < 3
 
 
 def test_given_gains_of_all_controllers_change_together():

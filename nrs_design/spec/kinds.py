@@ -83,7 +83,7 @@ HAND_MASS = QuantityKind(
     {"N": "that is a weight: divide it by the gravity and write kg"},
     sliding=_sliding("a mass that moves with the contact", ("kg",), "1.7 kg"),
 )
-LEVER_ARM = QuantityKind("a length", ("m",), "0.24 m")
+LEVER_ARM = QuantityKind("a length", ("m",), "240 mm")
 IMPEDANCE = QuantityKind(
     "an impedance",
     ("N*m*s/rad", "kg*m^2/s"),

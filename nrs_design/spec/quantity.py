@@ -12,7 +12,7 @@ from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
+from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30
@@ -163,6 +163,9 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
         if not error.message.startswith("unknown unit"):
             raise
         units = f"{kind.name} is written in {' or '.join(kind.units)}{kind.such}"
+        guess = guess_unit(unit)
+        if guess is not None and kind.accepts(parse_unit(guess).dimension):
+            units = f"did you mean {guess}? {units}"
         raise SpecError(error.message, remedy=units) from None
     return _checked_kind(quantity, kind)
 
@@ -213,7 +216,7 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     if not kind.is_about_commands:
         units = tuple(dict.fromkeys((kind.example.partition(" ")[2], *units)))
     expected, written = " or ".join(kind.units), " or ".join(f"'{text} {unit}'" for unit in units)
-    remedy = f"write {written}, whichever is meant"
+    remedy = f"write {written}, " + ("whichever is meant" if units[1:] else "if that is the unit")
     return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 

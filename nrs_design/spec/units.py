@@ -180,7 +180,7 @@ _OPERATORS: Operators[Unit] = {
 }
 
 
-def _guess(symbol: str) -> str | None:
+def guess_unit(symbol: str) -> str | None:
     """Return what is probably meant by a symbol that is no unit."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]
     near = alike or difflib.get_close_matches(symbol, UNITS, n=1)
@@ -188,7 +188,7 @@ def _guess(symbol: str) -> str | None:
 
 
 def _unknown(symbol: str, text: str) -> SpecError:
-    guess, known = _guess(symbol), "known units are " + " ".join(UNITS)
+    guess, known = guess_unit(symbol), "known units are " + " ".join(UNITS)
     remedy = f"did you mean {guess}? {known}" if guess else known
     within = "" if symbol == text else f" in {quoted(text)}"
     return SpecError(f"unknown unit {quoted(symbol)}{within}", remedy=remedy)

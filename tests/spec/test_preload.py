@@ -4,14 +4,14 @@ import math
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.interval import Interval
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
-from nrs_design.spec.preload import ExponentSpec, power_box
+from nrs_design.spec.preload import DIGITS, ExponentSpec, power_between, power_box
 
 from .samples import IMPEDANCE, interaction, spoiled
 
@@ -85,3 +85,36 @@ def test_spec():
     assert float(environment.stiffness.high / arm) == pytest.approx(984.915, abs=1e-3)
     assert float(environment.parameters["b"].low / arm) == pytest.approx(10 * 0.5**1.3)
     assert float(environment.parameters["b"].high / arm) == pytest.approx(10 * 2**1.3)
+
+
+F = Fraction
+bases = st.fractions("1/1000", 1000, max_denominator=1000)
+exponents = st.fractions(-3, 3, max_denominator=1000)
+
+
+@pytest.mark.parametrize(
+    ("base", "exponent", "power"),
+    [
+        (F(4), F(1, 2), F(2)),
+        (F(8, 27), F(-2, 3), F(9, 4)),
+        (F(7), F(0), F(1)),
+        (F(1), F("0.2"), F(1)),
+    ],
+)
+def test_powers_that_end_are_exact(base, exponent, power):
+    assert power_between(base, exponent) == (power, power)
+
+
+@settings(max_examples=50)
+@given(bases, exponents)
+def test_surely_between_and_near(base, exponent):
+    low, high = power_between(base, exponent)
+    q, power = exponent.denominator, base**exponent.numerator
+    assert low**q <= power <= high**q
+    assert low <= high <= low * (1 + F(1, 10 ** (DIGITS - 1)))
+
+
+@pytest.mark.parametrize("base", [F(0), F(-2)])
+def test_no_other_base(base):
+    with pytest.raises(ValueError, match="no power"):
+        power_between(base, F(1, 2))

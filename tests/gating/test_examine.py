@@ -10,7 +10,7 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.design.goals import Achieved
 from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import GAIN_MARGIN
-from nrs_design.gating.examine import Examiner, certified_rate
+from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import Status
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.evidence.growing_sequence import staying
@@ -21,7 +21,7 @@ from nrs_design.spec import read_spec
 from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
 from tests.proof.evidence.test_saturated_ellipsoid import HELD
 from tests.proof.graphs import common_quadratic
-from tests.proof.systems import bouncing, bouncing_in_steps, genuine, pushed, pushed_away
+from tests.proof.systems import bouncing, bouncing_in_steps, pushed, pushed_away
 from tests.support import ROOT, SOFT_TISSUE, family, replaced
 
 from .conftest import STABLE
@@ -234,26 +234,6 @@ def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
     refuted = replace(certificate, statements=(staying("a"),))
     (found,) = examiner.certified_goals(refuted)
     assert found.status is Status.INCONCLUSIVE
-
-
-@pytest.mark.parametrize(
-    ("example", "name"),
-    [
-        ("common-quadratic", "alpha"),
-        ("common-polynomial, discrete", "rho"),
-        ("growing-sequence, period", None),
-        (None, None),
-    ],
-)
-def test_a_rate_is_only_what_is_proved(example, name):
-    if example is None:
-        assert certified_rate(None) == (None, None)
-        return
-    system, evidence = genuine(example)
-    certificate = certificate_of(system, evidence)
-    rate, found = certified_rate(certificate)
-    assert found == name
-    assert (rate is None) is (name is None)
 
 
 def test_a_limit_that_no_proof_keeps_is_warned_of(tmp_path):

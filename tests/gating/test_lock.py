@@ -39,13 +39,6 @@ def test_goals_of_retired_rules_are_skipped(tmp_path, status):
     assert retired not in dump_lock(lock)
 
 
-@pytest.mark.parametrize("certificate", [None, ENTRY["certificate"]])
-def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, certificate):
-    entry = {**ENTRY, "verdict": "inconclusive", "rate": None, "certificate": certificate}
-    (tmp_path / "nrs.lock").write_text(document(entry))
-    assert read_lock(tmp_path / "nrs.lock").specs[0].verdict == "inconclusive"
-
-
 def spoiled(case):
     if "text" in case:
         return case["text"]

@@ -7,7 +7,6 @@ import pytest
 from nrs_design.gating.lock import Lock, dump_lock
 from tests.hostile.corpus import (
     CERTIFICATES,
-    LARGE_SPECS,
     LOCKS,
     NAMES,
     PROPOSALS,
@@ -78,14 +77,6 @@ def test_a_spec_is_checked(place, case):
 def test_a_spec_in_every_command(place, case, command):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
     write(place / "work/nrs.lock", dump_lock(Lock(specs=[])))
-    check(place, *command, "spec.nrs.yaml")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", SPEC_COMMANDS[1:3], ids=" ".join)
-@pytest.mark.parametrize("case", LARGE_SPECS)
-def test_a_large_spec_ends_within_the_budget(place, case, command):
-    write(place / "work/spec.nrs.yaml", LARGE_SPECS[case]())
     check(place, *command, "spec.nrs.yaml")
 
 

@@ -59,18 +59,6 @@ def test_less_is_asked_for_at_every_step_and_all_at_the_last():
         assert to_data(changed(spec.root, line.at, way.value_at(way.size))) == said
 
 
-def test_the_lengths_of_a_hand_are_decimals_of_its_unit():
-    line = lines_of(loaded(TEXT))[STIFFNESS]
-    up, down = line.alternatives
-    assert (line.weakest.value_at(0), up.value_at(0)) == (
-        ("747.1461 N/m", "747.1461 N/m"),
-        ("720.56 N/m", "747.1461 N/m"),
-    )
-    # Half of the way to 768.17, rounded towards the nominal value.
-    assert up.value_at(PARTS // 2) == ("720.56 N/m", "757.65 N/m")
-    assert down.value_at(PARTS // 2) == ("733.86 N/m", "768.17 N/m")
-
-
 @given(
     st.fractions(-1000, 1000, max_denominator=10**6),
     st.fractions(Fraction(1, 10**6), 1000, max_denominator=10**6),

@@ -39,18 +39,3 @@ def test_number_of_modes_is_limited() -> None:
     tail = "switching: arbitrary\n"
     assert len(switched(head + _modes(20_000, 1) + tail).modes) == 20_000
     assert "modes: more than 20000 entries" in refusal(head + _modes(20_001, 1) + tail).message
-
-
-def coprime(count: int, digits: int = 90) -> list[str]:
-    """Return numbers over denominators that have next to nothing in common."""
-    return [f"-1/{10 ** (digits - 1) + 1 + 2 * k}" for k in range(count)]
-
-
-def test_a_long_common_denominator_is_refused_where_it_is_read() -> None:
-    (a, b, c, d), few = coprime(4), coprime(3)
-    assert (
-        "1024 binary digits"
-        in refusal(spoiled(SWITCHED, "[[-1, -1], [1, -1]]", f"[[{a}, {b}], [{c}, {d}]]")).message
-    )
-    text = spoiled(SWITCHED, "[[-1, -1], [1, -1]]", f"[[{few[0]}, {few[1]}], [{few[2]}, -1]]")
-    assert switched(text).dimension == 2

@@ -179,7 +179,7 @@ def _examine(
     if certificate is not None:
         fault = None
         text = dump(certificate, origin_of(loaded.path, place))
-        if kept is None or not place.exists() or place.read_text("utf-8") != text:
+        if kept is None or not place.exists() or place.read_bytes() != text.encode():
             write_output(place, text, replaces=CERTIFICATE)
             progress("re-check")
             fault = run_verification(place, result).fault
@@ -197,8 +197,8 @@ def _examine(
     )
     page = files.report(loaded.spec.name)
     fulfilled = all(item.fulfilled for item in obligations)
-    as_recorded = kept is not None and fulfilled and _is_of(page, certificate)
-    if files.every_page or (files.html and not as_recorded):
+    renewed = kept is None or not fulfilled
+    if files.every_page or (files.html and (renewed or not _is_of(page, certificate))):
         progress("report")
         _write_page(result, page, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)

@@ -30,11 +30,7 @@ from nrs_design.loop.constant_parameters import (
 )
 from nrs_design.loop.constraints import assemble_switching
 from nrs_design.loop.located import grouped
-from nrs_design.loop.parameters import (
-    constant_parameters,
-    corner_modes,
-    read_parameters,
-)
+from nrs_design.loop.parameters import constant_parameters, corner_modes, read_parameters
 from nrs_design.models.cut import Ends, RangeCut, cut_ranges
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time

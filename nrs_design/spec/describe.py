@@ -17,11 +17,7 @@ from nrs_design.spec.load import LoadedSpec, parse_spec
 from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
-from nrs_design.spec.provenance import (
-    COVERS,
-    MOTOR_COVERS,
-    ProvenanceSpec,
-)
+from nrs_design.spec.provenance import COVERS, MOTOR_COVERS, ProvenanceSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import GainSpec, RangedQuantity, Times
 from nrs_design.spec.robot import RobotSpec

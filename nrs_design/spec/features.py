@@ -83,10 +83,7 @@ def _at_once(
 
 
 def _controller(
-    phrase: str,
-    key: str,
-    without: str,
-    holds: Callable[[ControllerSpec], object],
+    phrase: str, key: str, without: str, holds: Callable[[ControllerSpec], object]
 ) -> Feature[Spec]:
     """Return the feature of the first such controller, at one of its keys."""
     return Feature(

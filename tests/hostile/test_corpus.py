@@ -5,15 +5,7 @@ import os
 import pytest
 
 from nrs_design.gating.lock import Lock, dump_lock
-from tests.hostile.corpus import (
-    CERTIFICATES,
-    LOCKS,
-    NAMES,
-    PROPOSALS,
-    RECORDS,
-    SPECS,
-    write,
-)
+from tests.hostile.corpus import CERTIFICATES, LOCKS, NAMES, PROPOSALS, RECORDS, SPECS, write
 from tests.hostile.running import check
 from tests.support import COMMUTING
 

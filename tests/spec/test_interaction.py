@@ -1,11 +1,4 @@
-from .samples import (
-    FORCE,
-    IMPEDANCE,
-    interaction,
-    place_of,
-    refusal,
-    spoiled,
-)
+from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 
 
 def test_environments_may_be_missing_without_contact() -> None:

@@ -5,9 +5,7 @@ from fractions import Fraction
 from nrs_design.spec.switching import DwellTime
 from tests.tables import edited, spec_text
 
-from .samples import (
-    switched,
-)
+from .samples import switched
 
 
 def test_only_allowed_switches_need_a_reset() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from nrs_design.errors import CertificateError, OutputError
+from nrs_design.errors import OutputError
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.obligations import Caution
@@ -28,14 +28,6 @@ def test_a_remark_on_a_value_without_bound_reads_back(project):
     file.write_text(dump_lock(make_lock([replace(spec, cautions=(far,))], file)))
     remark = read_lock(file).specs[0].remark
     assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
-
-
-def test_unwritable_lock(project):
-    outcome = outcome_of(project, STABLE_SPEC, reports="ci")
-    with pytest.raises(OutputError, match="below the folder of the lock"):
-        write_lock(outcome, project / "reports/nrs.lock")
-    with pytest.raises(CertificateError, match="not a regular file"):
-        write_lock(outcome, project)
 
 
 def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):

@@ -14,7 +14,7 @@ from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from tests.support import COMMUTING
 
-from .samples import SWITCHED, refusal
+from .samples import SWITCHED
 
 
 def test_read_spec_keeps_text_and_hash(tmp_path: Path) -> None:
@@ -71,15 +71,6 @@ def test_error_names_the_file(tmp_path: Path) -> None:
         load_spec(path)
     assert caught.value.path == path
     assert str(caught.value).startswith(f"{path}:2:7: ")
-
-
-@pytest.mark.slow
-def test_many_faults_are_counted_quickly() -> None:
-    modes = "".join("  - {nam: a, A: [[1 1]]}\n" for _ in range(2000))
-    error = refusal(f"kind: switched-system\nname: a\ntime: discrete\nmodes:\n{modes}")
-    assert "`switching` is missing" in error.message
-    assert "4000 more faults" in str(error)
-    assert len(error.faults) == 4001
 
 
 def test_import_is_light() -> None:

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
 
-
 _Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 

@@ -12,7 +12,7 @@ from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, parse_unit
+from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, has_unknown, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30
@@ -160,7 +160,7 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
     try:
         quantity = Quantity(text, value, unit)
     except SpecError as error:
-        if not error.message.startswith("unknown unit"):
+        if not has_unknown(unit):
             raise
         units = f"{kind.name} is written in {' or '.join(kind.units)}{kind.such}"
         guess = guess_unit(unit)

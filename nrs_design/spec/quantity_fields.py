@@ -49,11 +49,10 @@ def read_quantity(
         quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
+            above = f"write a number above zero{kind.such}"
             raise SpecError(
                 f"{quoted(quantity.text)} must be {bound}",
-                remedy="check the sign"
-                if quantity.value
-                else f"write a number above zero{kind.such}",
+                remedy="check the sign" if quantity.value else above,
             )
         return quantity
 

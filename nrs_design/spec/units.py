@@ -180,6 +180,11 @@ _OPERATORS: Operators[Unit] = {
 }
 
 
+def has_unknown(text: str) -> bool:
+    """Tell whether a unit has symbols that are none."""
+    return not UNITS.keys() >= {*_SYMBOL.findall(text)}
+
+
 def guess_unit(symbol: str) -> str | None:
     """Return what is probably meant by a symbol that is no unit."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]

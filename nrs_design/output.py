@@ -32,8 +32,6 @@ FMU = (
 )
 LOCK = b'{\n  "schema": "nrs-design/lock/'
 PAGE = b'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta name="generator" content="nrs-design">\n'
-# What stands beside a page.
-PAGE_NOTE = b"nrs-design page made of\n"
 SCHEMA = (
     b'{\n  "$schema": "http://json-schema.org/draft-07/schema#",\n  "title": "nrs-design spec",\n',
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
@@ -58,7 +56,6 @@ GATE = re.compile(
     rb'\s*"name": "nrs-design"'
     rb'|<\?xml version="1\.0" encoding="UTF-8"\?>\n<testsuites name="nrs-design" '
     rb"|### [^\n]{1,4} nrs-design: "
-    rb"|<svg [^\n]*>\n<!-- nrs-design badge -->"
 )
 # What follows the first line of a figure that stands for itself.
 SVG_MARK = "<!-- nrs-design figure -->\n"

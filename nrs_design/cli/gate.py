@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.gating.run import Files
     from nrs_design.pipeline.certification import Overrides
 
-GateFormat = Literal["text", "github", "sarif", "junit", "json", "markdown", "badge"]
+GateFormat = Literal["text", "github", "sarif", "junit", "json", "markdown"]
 # Folders that a note lists by name.
 SHOWN = 5
 
@@ -197,7 +197,7 @@ def _certify(
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import certificates_of, check_folder, recorded_in, write_lock
+    from nrs_design.gating.renew import check_folder, recorded_in, write_lock
     from nrs_design.gating.run import run_gate
     from nrs_design.output import LOCK, check_place
 
@@ -206,9 +206,7 @@ def _certify(
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
     with progress("gate") as step:
-        files = replace(
-            files, locked=certificates_of(known, lock), recorded=recorded_in(known, lock)
-        )
+        files = replace(files, locked=recorded_in(known, lock))
         outcome = run_gate(specs, files, step, overrides, jobs)
     return write_lock(outcome, lock, prune=prune)
 

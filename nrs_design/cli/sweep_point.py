@@ -23,7 +23,7 @@ from nrs_design.cli.printing import taking_json
 from nrs_design.errors import CertificateError, ClockError, NrsDesignError
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.document import Data, hash_meaning
-from nrs_design.spec.instead import saying_instead
+from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.answers import PointAnswer, is_shown
@@ -73,7 +73,7 @@ def answer_point(job: Job, point: tuple[tuple[str, ...], PointAnswer | None]) ->
 
 
 def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
-    from nrs_design.gating.recorded import hash_followed
+    from nrs_design.gating.lock import hash_followed
 
     means: tuple[Data, ...] = tuple((axis.sha256, {**hash_followed(axis)}) for axis in axes)
     asked = (*job.command, *job.options)

@@ -21,7 +21,7 @@ from nrs_design.spec import (
     parse_exact,
 )
 from nrs_design.spec.controllers import contact_names
-from nrs_design.spec.free import FactorBounds
+from nrs_design.spec.interaction_parts import FactorBounds
 from nrs_design.spec.quantity import exact_number
 
 if TYPE_CHECKING:

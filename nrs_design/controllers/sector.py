@@ -15,8 +15,8 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names
-from nrs_design.spec.monitoring import Surface
 from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.sensor import Surface
 
 # A sample counts as judged if a stiffness beyond the range by this factor had been reported.
 JUDGED = Fraction(3, 2)

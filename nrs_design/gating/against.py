@@ -25,7 +25,7 @@ from nrs_design.certificates.prove import (
 )
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.find_specs import find_specs
-from nrs_design.gating.lock import LockedSpec, read_lock_if_any
+from nrs_design.gating.lock import LockedSpec, hash_recorded, read_lock_if_any
 from nrs_design.gating.obligations import (
     BaseChanges,
     Caution,
@@ -34,7 +34,6 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     Status,
 )
-from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.spec import LoadedSpec, read_spec
@@ -244,11 +243,10 @@ def _shown(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fractio
 def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
     """Return a spec with an obligation for each thing that is weaker, at its place."""
     broken = []
-    for change in changes:
-        if change.weaker:
-            at, where = _caution(spec, change), ".".join(map(str, change.key_path)) or "spec"
-            place = (at.message, at.line, at.column)
-            broken.append(Obligation(NOT_WEAKER, spec.path, where, Status.MISSED, *place))
+    for change in (change for change in changes if change.weaker):
+        at, where = _caution(spec, change), ".".join(map(str, change.key_path)) or "spec"
+        place = (at.message, at.line, at.column)
+        broken.append(Obligation(NOT_WEAKER, spec.path, where, Status.MISSED, *place))
     return replace(spec, obligations=(*spec.obligations, *broken))
 
 

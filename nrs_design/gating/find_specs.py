@@ -9,14 +9,14 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.spec.document import MAX_BYTES, Mapping, Scalar, parse_document
+from nrs_design.spec.document import MAX_BYTES
 from nrs_design.spec.load import SPEC_KINDS, axes_at
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
-# The key of a spec in a text that cannot be parsed: quoted or not, in any style of YAML.
+# The key of a spec: at the beginning of a line, or of a mapping in one line.
 _KIND = re.compile(
-    rf"(?<![\w.-])[\"']?kind[\"']?\s*:\s*(?:[!&]\S*\s+)*[\"']?({'|'.join(SPEC_KINDS)})(?![\w-])"
+    rf"^(?:\ufeff|\{{)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w-])", re.MULTILINE
 )
 
 
@@ -30,7 +30,14 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     """
     found: dict[str, Path] = {}
     for path in paths:
-        for spec in _specs_of(path):
+        specs = sorted(_specs_below(path)) if os.path.isdir(path) else [path]
+        if not specs:
+            raise NrsDesignError(
+                f"there is no *{SUFFIXES[0]} in this folder",
+                path=path,
+                remedy="name a spec file or a folder with specs",
+            )
+        for spec in specs:
             found.setdefault(os.path.realpath(spec), spec)
     return tuple(axis for spec in sorted(found.values()) for axis in _axes_at(spec))
 
@@ -72,7 +79,7 @@ def _axes_at(spec: Path) -> tuple[Path, ...]:
 
 
 def _reads_like_a_spec(file: Path) -> bool:
-    """Tell whether a file has the kind of a spec, as a spec is read; a broken one may have it."""
+    """Tell whether a file says the kind of a spec; a broken one may."""
     if not file.is_file():
         return False
     try:
@@ -82,27 +89,7 @@ def _reads_like_a_spec(file: Path) -> bool:
         return False
     wide = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
     text = content.decode("utf-16" if wide else "utf-8-sig", errors="replace")
-    if not any(kind in text for kind in SPEC_KINDS):
-        return False
-    try:
-        root = parse_document(text)
-    except SpecError:
-        return _KIND.search(text) is not None
-    kind = root.entries.get("kind") if isinstance(root, Mapping) else None
-    return isinstance(kind, Scalar) and kind.text in SPEC_KINDS
-
-
-def _specs_of(path: Path) -> list[Path]:
-    if not os.path.isdir(path):
-        return [path]
-    specs = sorted(_specs_below(path))
-    if not specs:
-        raise NrsDesignError(
-            f"there is no *{SUFFIXES[0]} in this folder",
-            path=path,
-            remedy="name a spec file or a folder with specs",
-        )
-    return specs
+    return _KIND.search(text) is not None
 
 
 def _specs_below(root: Path) -> Iterator[Path]:

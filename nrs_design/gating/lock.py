@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import posixpath
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -23,6 +26,8 @@ from pydantic import (
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec
+from nrs_design.spec.scenarios import ScenarioSpec
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
@@ -140,7 +145,7 @@ class Lock(_Frozen):
     """The whole file."""
 
     schema_id: Literal["nrs-design/lock/2"] = Field(default=SCHEMA, alias="schema")
-    specs: list[LockedSpec]
+    specs: Annotated[list[LockedSpec], Field(max_length=MAX_SPECS)]
 
     @model_validator(mode="after")
     def _check_paths(self) -> Lock:
@@ -151,6 +156,28 @@ class Lock(_Frozen):
         if len(set(files)) != len(files):
             raise ValueError("two specs have the same certificate file")
         return self
+
+
+def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
+    """Return the SHA-256 of every file that scenarios with limits follow, by its name in the spec.
+
+    Files are below its folder; one that cannot be read is left out.
+    """
+    return _hashes(loaded, lambda scenario: scenario.limits is not None)
+
+
+def hash_followed(loaded: LoadedSpec) -> Mapping[str, str]:
+    """Return the SHA-256 of every file that any scenario follows; see `hash_recorded`."""
+    return _hashes(loaded, lambda scenario: True)
+
+
+def _hashes(loaded: LoadedSpec, counts: Callable[[ScenarioSpec], bool]) -> dict[str, str]:
+    spec, found = loaded.spec, {}
+    runs = spec.scenarios.values() if isinstance(spec, InteractionDesignSpec) else ()
+    for name in sorted({run.command.csv for run in runs if run.command.csv and counts(run)}):
+        with suppress(OSError), open_regular(loaded.path.parent / name) as stream:
+            found[name] = hashlib.file_digest(stream, "sha256").hexdigest()
+    return found
 
 
 def dump_lock(lock: Lock) -> str:
@@ -166,11 +193,14 @@ def read_lock_if_any(file: Path) -> Lock:
 
 def read_lock(file: Path) -> Lock:
     """Read a lock file; a missing, foreign or oversized one is a `CertificateError`."""
-    remedy = "make it with nrs-design gate, without --locked"
+    remedy = "remove it, and make it anew with nrs-design gate, without --locked"
     refused = partial(CertificateError, path=file, remedy=remedy)
     try:
-        document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=unique_keys)
-        _check_format(document, file)
+        with open_regular(file) as stream:
+            content = stream.read(MAX_BYTES + 1)
+        if len(content) > MAX_BYTES:
+            raise ValueError(f"it is larger than {MAX_BYTES >> 20} MiB")
+        document = json.loads(read_json_text(content), object_pairs_hook=unique_keys)
         return Lock.model_validate(document)
     except OSError as error:
         raise refused(f"cannot be read ({error.strerror})") from error
@@ -181,41 +211,6 @@ def read_lock(file: Path) -> Lock:
         raise refused(f"not a lock file: {where}: {message}") from error
     except (ValueError, RecursionError) as error:
         raise refused(f"not a lock file: {error}") from error
-
-
-def _check_format(document: object, file: Path) -> None:
-    """Refuse other versions, and what is too large, before anything is built from it."""
-    if not isinstance(document, dict):
-        return
-    schema = document.get("schema")
-    if isinstance(schema, str) and schema.startswith("nrs-design/lock/") and schema != SCHEMA:
-        raise CertificateError(
-            f"was written by another version of nrs-design (not {SCHEMA})",
-            path=file,
-            remedy="remove it, then run nrs-design gate over all specs",
-        )
-    specs = document.get("specs")
-    if isinstance(specs, list) and len(specs) > MAX_SPECS:
-        raise CertificateError(
-            f"holds {len(specs)} specs, and no lock file holds more than {MAX_SPECS}",
-            path=file,
-            remedy="split it: one --lock for each part of the project",
-        )
-
-
-def _read_bytes(file: Path) -> bytes:
-    """Read a whole file, but never an endless one."""
-    if file.exists() and not file.is_file():
-        raise CertificateError("is not a regular file", path=file)
-    with open_regular(file) as stream:
-        content = stream.read(MAX_BYTES + 1)
-    if len(content) > MAX_BYTES:
-        raise CertificateError(
-            f"is larger than any lock file ({MAX_BYTES >> 20} MiB)",
-            path=file,
-            remedy="make it anew with nrs-design gate",
-        )
-    return content
 
 
 def relative_to_lock(path: Path, lock: Path) -> str:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
-from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
+from nrs_design.gating.lock import Lock, LockedSpec, hash_recorded, relative_to_lock
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -20,16 +21,31 @@ from nrs_design.gating.obligations import (
     Status,
     failed,
 )
-from nrs_design.gating.recorded import hash_recorded
-from nrs_design.gating.required import find_missing
-from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT
+from nrs_design.gating.rules import (
+    GOAL,
+    LOCKED,
+    RESPONSE_GOAL,
+    RULES,
+    SCENARIO_LIMIT,
+    STIFFNESS_RANGE,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR
 from nrs_design.spec.load import is_there
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec, Spec
 
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
 _AS_LOCKED = "(as locked; not computed again)"
+
+# What a spec asks of its design: the id of a rule, and the subject.
+Asked = tuple[str, str]
+_RESPONSES = ("transparency", "accuracy")
+# A design without margins has this in the place of all that is asked of controllers.
+_NO_MARGINS = (STIFFNESS_RANGE.id, "controllers")
 
 
 def run_locked(
@@ -193,3 +209,36 @@ def _absent(path: Path, message: str) -> SpecOutcome:
     shown = Path(os.path.relpath(path))
     obligation = Obligation(LOCKED, shown, "lock", Status.MISSED, f"this spec {message}")
     return SpecOutcome(shown, (obligation,))
+
+
+def find_missing(spec: Spec, locked: Mapping[Asked, str]) -> tuple[Asked, ...]:
+    """Return what a spec asks of its design, and is not locked, each with its status."""
+    if spec.kind != "interaction-design":
+        return ()
+    # What could not be judged stands for all that was asked of it, and is never met.
+    unjudged = {one for one, status in locked.items() if status != "met"}
+    asked = () if _NO_MARGINS in unjudged else tuple(_of_controllers(spec))
+    limits = (one for one in _of_scenarios(spec) if (one[0], one[1].split(":")[0]) not in unjudged)
+    return tuple(one for one in (*asked, *limits) if one not in locked)
+
+
+def _of_scenarios(spec: InteractionDesignSpec) -> Iterator[Asked]:
+    for name, scenario in spec.scenarios.items():
+        for quantity in () if scenario.limits is None else scenario.limits.named:
+            yield SCENARIO_LIMIT.id, f"{name}: {quantity}"
+
+
+def _of_controllers(spec: InteractionDesignSpec) -> Iterator[Asked]:
+    sampling = spec.sampling
+    # A force that is sampled more often than the motion loop has no such limit.
+    limited = sampling is None or sampling.outer >= sampling.period.exact
+    for name, controller in spec.controllers.items():
+        if controller.limits_stiffness and limited:
+            yield STIFFNESS_RANGE.id, name
+        given = (spec.goals, getattr(controller, "goals", None))
+        keys = {key for goals in given if goals is not None for key, _ in goals.given()}
+        for key in sorted(keys - OF_THE_CERTIFICATE):
+            if "goals" in type(controller).model_fields and ONLY_FOR.get(key, controller.type) == (
+                controller.type
+            ):
+                yield (RESPONSE_GOAL if key in _RESPONSES else GOAL).id, f"{name}: {key}"

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from operator import attrgetter
 from pathlib import Path
 
 from nrs_design import __version__
-from nrs_design.certificates.verify import read_document
-from nrs_design.errors import CertificateError, OutputError
+from nrs_design.errors import OutputError
 from nrs_design.gating.lock import (
     DECIDED_AGAIN,
     Lock,
@@ -41,37 +39,32 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
     """Renew the entries of the specs that were examined, keep the others, and note it.
 
     A spec that has no verdict now keeps its entry if it has not changed: what was locked is
-    re-checked exactly. `prune` drops the entries of specs that no longer exist. A certificate that
-    another run has replaced meanwhile is an `OutputError`.
+    re-checked exactly. `prune` drops the entries of specs that no longer exist.
     """
     for spec in outcome.specs:
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
     with alone_in(file.parent):
-        return _write_lock(outcome, file, prune=prune)
-
-
-def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome:
-    for spec in outcome.specs:
-        _check_kept(spec)
-    fresh = make_lock(outcome.specs, file).specs
-    # A spec that is gone keeps its entry.
-    present = (spec for spec in outcome.specs if is_there(spec.path))
-    examined = {relative_to_lock(spec.path, file): spec for spec in present}
-    locked = read_lock_if_any(file).specs
-    old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
-    gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
-    written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
-    # A spec that was renamed: its certificate is now found under the new name of the file.
-    dropped = {e.path for e in old if e.certificate is not None and e.certificate.file in written}
-    if prune:
-        dropped |= gone
-    kept = [entry for entry in old if entry.path not in dropped]
-    if kept or fresh or file.exists():
-        entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
-        if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
-            write_output(file, dump_lock(lock), replaces=LOCK)
-            outcome = outcome.with_note(f"{file} written")
+        fresh = make_lock(outcome.specs, file).specs
+        # A spec that is gone keeps its entry.
+        present = (spec for spec in outcome.specs if is_there(spec.path))
+        examined = {relative_to_lock(spec.path, file): spec for spec in present}
+        locked = read_lock_if_any(file).specs
+        old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
+        gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
+        written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
+        # A spec that was renamed: its certificate is now found under the new name of the file.
+        dropped = {
+            e.path for e in old if e.certificate is not None and e.certificate.file in written
+        }
+        if prune:
+            dropped |= gone
+        kept = [entry for entry in old if entry.path not in dropped]
+        if kept or fresh or file.exists():
+            entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
+            if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
+                write_output(file, dump_lock(lock), replaces=LOCK)
+                outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}
     missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]
@@ -87,21 +80,6 @@ def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome
     return outcome
 
 
-def _check_kept(spec: SpecOutcome) -> None:
-    """Refuse to lock a certificate that another run has replaced since it was written."""
-    if spec.certificate is None:
-        return
-    with suppress(CertificateError):
-        if read_document(spec.certificate).get("id") == spec.certificate_id:
-            return
-    raise OutputError(
-        "is no longer the certificate that this run has written, so nothing is locked: another run "
-        "works in this tree",
-        path=spec.certificate,
-        remedy="let it end, then run nrs-design gate again",
-    )
-
-
 def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
     """Tell whether a spec is unchanged since it was locked, and has no verdict now."""
     return spec.verdict is None and spec.sha256 == entry.sha256
@@ -111,17 +89,6 @@ def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
 _MOST = 1e6
 # What is shown by no certificate is taken from a lock file on trust, so it is not proved there.
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
-
-
-def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
-    """Return which spec every locked certificate file belongs to, as real paths."""
-    return {
-        Path(os.path.realpath(file.parent / entry.certificate.file)): Path(
-            os.path.realpath(file.parent / entry.path)
-        )
-        for entry in lock.specs
-        if entry.certificate is not None
-    }
 
 
 def recorded_in(lock: Lock, file: Path) -> Mapping[Path, Recorded]:

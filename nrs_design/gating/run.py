@@ -8,21 +8,19 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
-from nrs_design.certificates.prove import find_altered, read_document
 from nrs_design.controllers.gains import gains_of
-from nrs_design.errors import CertificateError, DesignError, Fault, OutputError, SpecError
+from nrs_design.errors import DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed
-from nrs_design.gating.pages import is_current, note_page, page_fingerprint
-from nrs_design.gating.paths import is_utf8
-from nrs_design.gating.recorded import hash_recorded
+from nrs_design.gating.lock import hash_recorded
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed, is_utf8
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
@@ -35,8 +33,10 @@ from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of
 
 if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.search.certification import Limits
+
+_Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,10 +46,8 @@ class Files:
     folder: Path  # For all of them
     html: bool = True  # Whether reports are asked for, of what is new or not fulfilled
     every_page: bool = False  # Whether they are of all specs
-    # Which spec a certificate file is locked for, as real paths.
-    locked: Mapping[Path, Path] = field(default_factory=dict)
     # The certificate that is locked for a spec, by the absolute path of the spec.
-    recorded: Mapping[Path, Recorded] = field(default_factory=dict)
+    locked: Mapping[Path, Recorded] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -58,7 +56,7 @@ class Files:
     def recorded_for(self, loaded: LoadedSpec) -> Recorded:
         """Return the certificate that is locked for a spec; else where it would be."""
         beside = Recorded(self.certificate(loaded.spec.name))
-        return self.recorded.get(Path(os.path.abspath(loaded.path)), beside)
+        return self.locked.get(Path(os.path.abspath(loaded.path)), beside)
 
     def report(self, name: str) -> Path:
         """Return the report file of the spec of that name."""
@@ -68,9 +66,12 @@ class Files:
         """Refuse to write files of that name where they are those of another spec."""
         check_owner(spec, name, self.folder)
         file = self.certificate(name)
-        owner = self.locked.get(Path(os.path.realpath(file)))
-        if owner is not None and file_of(owner).is_file() and owner != Path(os.path.realpath(spec)):
-            raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
+        place, own = os.path.realpath(file), os.path.realpath(spec)
+        for owner, kept in self.locked.items():
+            locked = kept.file.name == file.name and os.path.realpath(kept.file) == place
+            if locked and file_of(owner).is_file() and os.path.realpath(owner) != own:
+                message = f"is locked for {os.path.relpath(owner)}"
+                raise OutputError(message, path=file, remedy=REMEDY)
 
 
 def run_gate(
@@ -86,12 +87,13 @@ def run_gate(
     """
     read = [_read(path) for path in specs]
     valid = [item for item in read if isinstance(item, LoadedSpec)]
-    task = _Task(files, overrides, _namesakes(valid), tuple(one.path for one in valid))
+    examine = partial(_examine_safely, files, overrides, _namesakes(valid))
     found: dict[Path, SpecOutcome] = {}
     if jobs == 1:
-        found = {one.path: task.examine(one, progress) for one in valid}
+        found = {one.path: examine(one, progress) for one in valid}
     else:
-        for _, outcome in map_in_processes(task.examine_next, range(len(valid)), jobs):
+        work = partial(_examine_next, examine, [one.path for one in valid])
+        for _, outcome in map_in_processes(work, range(len(valid)), jobs):
             found[outcome.path] = outcome
             progress(f"{len(found)} of {len(valid)} specs")
     return GateOutcome(
@@ -99,33 +101,29 @@ def run_gate(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
-    """What is done with every spec, in any process."""
+def _examine_safely(
+    files: Files,
+    overrides: Overrides | None,
+    namesakes: Mapping[Path, Path],
+    loaded: LoadedSpec,
+    progress: Progress,
+) -> SpecOutcome:
+    """Return what is found about a spec, whatever goes wrong with it."""
+    namesake, name = namesakes.get(loaded.path), loaded.spec.name
+    try:
+        if namesake is not None:
+            raise _shared_name(loaded, namesake)
+        with about(getattr(loaded.spec, "axis", None)):
+            return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
+    except Exception as error:
+        # One spec must not keep the others from being examined, whatever goes wrong with it.
+        return failed(loaded.path, error, loaded.sha256)
 
-    files: Files
-    overrides: Overrides | None
-    namesakes: Mapping[Path, Path]  # Another spec of the same name, for those that have one
-    specs: tuple[Path, ...]
 
-    def examine(self, loaded: LoadedSpec, progress: Progress) -> SpecOutcome:
-        """Return what is found about a spec, whatever goes wrong with it."""
-        namesake, name = self.namesakes.get(loaded.path), loaded.spec.name
-        try:
-            if namesake is not None:
-                raise _shared_name(loaded, namesake)
-            with about(getattr(loaded.spec, "axis", None)):
-                return _examine(
-                    loaded, self.files, lambda s: progress(f"{name}: {s}"), self.overrides
-                )
-        except Exception as error:
-            # One spec must not keep the others from being examined, whatever goes wrong with it.
-            return failed(loaded.path, error, loaded.sha256)
-
-    def examine_next(self, index: int) -> SpecOutcome:
-        """Return what is found about a spec, which is read here."""
-        read = _read(self.specs[index])
-        return read if isinstance(read, SpecOutcome) else self.examine(read, silent)
+def _examine_next(examine: _Examine, paths: Sequence[Path], index: int) -> SpecOutcome:
+    """Return what is found about a spec, which is read here."""
+    read = _read(paths[index])
+    return read if isinstance(read, SpecOutcome) else examine(read, silent)
 
 
 def _read(path: Path) -> LoadedSpec | SpecOutcome:
@@ -179,9 +177,9 @@ def _examine(
     file = None if certificate is None else place
     if certificate is not None:
         fault = None
-        origin = origin_of(loaded.path, place)
-        if kept is None or not _holds(place, certificate.id, origin):
-            write_output(place, dump(certificate, origin), replaces=CERTIFICATE)
+        text = dump(certificate, origin_of(loaded.path, place))
+        if kept is None or not place.exists() or place.read_bytes() != text.encode():
+            write_output(place, text, replaces=CERTIFICATE)
             progress("re-check")
             fault = run_verification(place, result).fault
         obligations += (examiner.certificate(place, fault),)
@@ -198,10 +196,10 @@ def _examine(
     )
     page = files.report(loaded.spec.name)
     fulfilled = all(item.fulfilled for item in obligations)
-    # A page that is there must be one of this spec.
-    if files.every_page or (files.html and (kept is None or not fulfilled or page.exists())):
+    renewed = kept is None or not fulfilled
+    if files.every_page or (files.html and (renewed or not _is_of(page, certificate))):
         progress("report")
-        _write_page(result, page, limits, analysis, blocked)
+        _write_page(result, page, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
         return replace(outcome, recorded=recorded)
@@ -248,31 +246,19 @@ def _judge_scenarios(
             yield from examiner.scenario(name, simulated)
 
 
-def _holds(file: Path, id_: str, origin: str) -> bool:
-    """Tell whether a file is the certificate of an id, which covers all of it but its origin."""
-    try:
-        document = read_document(file)
-    except CertificateError:
-        return False
-    said = document.get("id"), document.get("origin")
-    return said == (id_, origin) and find_altered(document) is None
+def _is_of(page: Path, certificate: Certificate | None) -> bool:
+    """Tell whether a page is not there, or names this certificate: to draw it anew takes long."""
+    if not page.exists() or certificate is None:
+        return not page.exists()
+    return certificate.id.encode() in page.read_bytes()
 
 
 def _write_page(
-    result: Result,
-    page: Path,
-    limits: Limits,
-    analysis: DesignAnalysis | None,
-    blocked: Blocked | None,
+    result: Result, page: Path, analysis: DesignAnalysis | None, blocked: Blocked | None
 ) -> None:
-    """Draw the page of a spec, unless the one that is there is just this."""
-    origin = origin_of(result.loaded.path, page)
-    made = page_fingerprint(result, limits, origin)
-    if is_current(page, made):
-        return
     # Drawing costs seconds to import; a run without reports must not pay for it.
     from nrs_design.reporting import build_report, render_html
 
+    origin = origin_of(result.loaded.path, page)
     html = render_html(build_report(result, analysis, blocked=blocked), origin)
     write_output(page, html, replaces=PAGE)
-    note_page(page, made)

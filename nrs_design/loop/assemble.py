@@ -30,11 +30,7 @@ from nrs_design.loop.constant_parameters import (
 )
 from nrs_design.loop.constraints import assemble_switching
 from nrs_design.loop.located import grouped
-from nrs_design.loop.parameters import (
-    constant_parameters,
-    corner_modes,
-    read_parameters,
-)
+from nrs_design.loop.parameters import constant_parameters, corner_modes, read_parameters
 from nrs_design.models.cut import Ends, RangeCut, cut_ranges
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
@@ -46,7 +42,7 @@ if TYPE_CHECKING:
     from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.operating import OperatingConditions
+    from nrs_design.spec.build_plant import OperatingConditions
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 

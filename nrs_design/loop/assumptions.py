@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
-    from nrs_design.spec.operating import Preload
+    from nrs_design.spec.build_plant import Preload
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20

@@ -17,7 +17,7 @@ from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec.operating import Bounds
+from nrs_design.spec.build_plant import Bounds
 
 _ASSUMED = Assumption("inputs.command")
 

@@ -31,7 +31,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.operating import OperatingConditions
+from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 
 

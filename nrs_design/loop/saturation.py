@@ -27,8 +27,8 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.motion import MOTOR_COMMAND
-from nrs_design.spec.operating import OperatingConditions
 
 # States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
 _ERROR, _OMEGA = 0, 1

@@ -49,9 +49,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
-from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ParsedBy, SpecModel, optional
@@ -28,12 +27,6 @@ def _read_degree(value: object) -> int:
 
 
 def _read_budget(value: object) -> Fraction:
-    if isinstance(value, str) and value.strip().endswith("s"):
-        raise fault(
-            f"{quoted(value)} is a time, and a budget counts work, which is the same on every "
-            "machine",
-            "write a number without a unit, such as 30; one of work takes about a second",
-        )
     budget = read_exact(value)
     if not 0 < budget <= LARGEST_BUDGET:
         raise fault(

@@ -39,8 +39,6 @@ class Feature(Generic[S]):
     without: str
     # False, None or "" where a spec has none; a text, or more, names what has it.
     find: Callable[[S], object]
-    # The spec that does without it, where other rows may refuse that.
-    undo: Callable[[S], S] | None = None
 
 
 @dataclass(frozen=True)
@@ -62,24 +60,11 @@ class Row(Generic[S]):
     # Those that do not combine, where the condition is that a spec has all of them.
     features: tuple[Feature[Any], ...] = ()
 
-    def holds(self, said: Any) -> bool:
-        """Tell whether the condition holds in a part."""
-        return any(self._found(part) for _, part in self.parts(said))
-
-    def _found(self, part: S) -> object:
-        found = self.find(part)
-        return next(found, None) if isinstance(found, Iterator) else found
-
-    def _remedies(self, said: Any, beside: Sequence[Row[Any]]) -> str:
-        """Return the ways out, less those into what rows beside this one refuse."""
-        ways = {_filled(item.without, i): item.undo for i, item in enumerate(self.features)}
-        closed = {way for way, undo in ways.items() if undo and _leads_on(undo, said, beside)}
-        return ", or ".join(way for way in ways if way not in closed) or self.remedy
-
-    def faults(self, said: Any, beside: Sequence[Row[Any]] = ()) -> Iterator[PydanticCustomError]:
+    def faults(self, said: Any) -> Iterator[PydanticCustomError]:
         """Yield a fault for each part in which the condition holds."""
         for place, part in self.parts(said):
-            if found := self._found(part):
+            found = self.find(part)
+            if found := next(found, None) if isinstance(found, Iterator) else found:
                 # A named tuple is one thing that is found.
                 values = found if type(found) is tuple else (found,)
                 at = (
@@ -87,24 +72,13 @@ class Row(Generic[S]):
                     for key in _DOT.split(self.at)
                     if key
                 )
-                remedy = self._remedies(said, beside)
-                texts = (text.format(*values, s=part) for text in (self.message, remedy))
+                texts = (text.format(*values, s=part) for text in (self.message, self.remedy))
                 yield fault(*texts, *place, *at)
 
 
 def _filled(text: str, number: int) -> str:
     """Return a text of a feature for the place that it has among several."""
     return text.replace("{0", f"{{{number}")
-
-
-def _leads_on(undo: Callable[[S], S], said: S, rows: Sequence[Row[Any]]) -> bool:
-    """Tell whether a row refuses what a spec becomes, and not what it is."""
-    try:
-        changed = undo(said)
-        return any(row.holds(changed) and not row.holds(said) for row in rows)
-    except AttributeError:
-        # A part is missing, since it is not valid.
-        return False
 
 
 def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) -> tuple[Row[S], ...]:
@@ -142,30 +116,14 @@ def not_together(
     return Row(features[0].at, find, message, remedy, features=features)
 
 
-def find_faults(
-    checks: Sequence[Row[Any]],
-    said: object,
-    beside: Sequence[Row[Any]] = (),
-    *,
-    partial: bool = False,
-) -> list[dict[str, Any]]:
-    """Return the faults that a table of checks finds; no advice leads to others, or to `beside`.
-
-    `partial`: parts that are not valid may be missing; checks that ask for them are left out.
-    """
-    found: list[dict[str, Any]] = []
-    for check in checks:
-        try:
-            found += [error.context or {} for error in check.faults(said, (*checks, *beside))]
-        except AttributeError:
-            if not partial:
-                raise
-    return found
+def find_faults(checks: Sequence[Row[Any]], said: object) -> list[dict[str, Any]]:
+    """Return the faults that a table of checks finds."""
+    return [error.context or {} for check in checks for error in check.faults(said)]
 
 
-def run_checks(checks: Sequence[Row[Any]], said: object, beside: Sequence[Row[Any]] = ()) -> None:
+def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
     """Raise the faults that a table of checks finds, all of them as one error."""
-    if found := find_faults(checks, said, beside):
+    if found := find_faults(checks, said):
         raise as_error(found)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,24 +11,16 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, contact_names
-from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
+from nrs_design.spec.environment import AbstractEnvironmentSpec, unit_at_pivot
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.interaction_parts import DriveSpec
 from nrs_design.spec.load import LoadedSpec, parse_spec
 from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.motion import ActuatorIntervals, LimitsSpec
-from nrs_design.spec.provenance import (
-    COVERS,
-    MOTOR_COVERS,
-    Coverage,
-    IdentifiedRangesSpec,
-    IdentifiedSpec,
-)
+from nrs_design.spec.motion import LimitsSpec
+from nrs_design.spec.provenance import COVERS, MOTOR_COVERS, ProvenanceSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import GainSpec, RangedQuantity, Times
 from nrs_design.spec.robot import RobotSpec
-from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.units import BASE_UNITS, THESIS_COMMAND
@@ -37,9 +29,18 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import Spec
 
 MAX_LISTED = 20
-# Keys of a controller that are listed in a way of their own, and the kinds of gains.
-_TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
-_LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
+# Keys of a controller that are listed in a way of their own.
+_LISTED = frozenset(
+    ["type", "environment", "contacts", "desired_impedance", "desired_impedance_ratio", "goals"]
+)
+# What is listed behind the controllers, and behind what identification wrote down.
+_OTHERS = (
+    *("idle_states", "anti_windup", "goals", "design", "sampling", "disturbances", "sensor"),
+    *("monitoring", "mode_logic", "scenarios"),
+)
+_IDENTIFIED = (
+    *("range_covers", "range_id", "linearized_about", "provenance", "doubts", "accept_doubt"),
+)
 _SHOWN = (
     kinds.INERTIA,
     kinds.IMPEDANCE,
@@ -117,50 +118,17 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    for name, drive in spec.drives.items():
-        yield from _drive(name, drive)
-    yield from describe_model(spec.motion_loop, "motion_loop")
-    yield from describe_model(spec.limits, "limits")
-    for name, environment in spec.environments.items():
-        yield from _environment(f"environments.{name}", environment)
+    for key in (*spec.drives, "motion_loop", "limits", "environments"):
+        yield from describe_model(getattr(spec, key), key)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
-    for key in ("idle_states", "anti_windup", "goals", "design"):
-        yield from describe_model(getattr(spec, key), key)
-    if spec.sampling is not None:
-        yield from _sampling(spec.sampling)
-    for key in ("disturbances", "sensor", "monitoring", "mode_logic", "scenarios"):
+    for key in _OTHERS:
         yield from describe_model(getattr(spec, key), key)
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield from _switching(spec.switching)
 
 
-def _drive(name: str, drive: DriveSpec) -> Iterator[Line]:
-    for key in type(drive).model_fields:
-        value = getattr(drive, key)
-        if isinstance(value, RangedQuantity):
-            unit = _shown_unit(value.nominal)
-            yield from _ranged(f"{name}.{key}", value, value.interval, unit)
-        elif isinstance(value, ActuatorIntervals):
-            for measured, (low, high) in value:
-                yield Line(f"{name}.{key}.{measured}", f"[{low.text}, {high.text}]", "", "")
-        elif key not in IdentifiedRangesSpec.model_fields and value != THESIS_COMMAND:
-            yield from describe_model(value, f"{name}.{key}")
-    yield from _identified(name, drive, MOTOR_COVERS)
-
-
-def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
-    for key in ("period", "outer_period"):
-        yield from describe_model(getattr(sampling, key), f"sampling.{key}")
-    least, most = sampling.delay
-    delay = str(least) if least == most else f"[{least}, {most}]"
-    yield Line("sampling.delay", delay, "", "samples")
-    for key in ("latency", "jitter", "misses", "admittance"):
-        yield from describe_model(getattr(sampling, key), f"sampling.{key}")
-    yield from _provenance("sampling", sampling)
-
-
-def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
+def _environment(name: str, environment: AbstractEnvironmentSpec) -> Iterator[Line]:
     yield Line(f"{name}.model", environment.model, "", "")
     turned = environment.exact_at_pivot()
     parameters = environment.ranges
@@ -176,25 +144,18 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
         value = _ends(float(interval.low), float(interval.high))
         yield Line(f"{name}.{key} over the preload", "", value, unit)
     yield from describe_model(environment.lever_arm, f"{name}.lever_arm")
-    yield from _identified(name, environment, COVERS)
+    yield from _identified(name, environment)
 
 
-def _identified(
-    name: str, item: IdentifiedRangesSpec, covers: Mapping[Coverage, str]
-) -> Iterator[Line]:
-    """List what identified ranges hold, and where they come from."""
-    if item.range_covers is not None:
-        yield Line(f"{name}.range_covers", item.range_covers, covers[item.range_covers], "")
-    if isinstance(item, AbstractEnvironmentSpec):
-        yield from describe_model(item.linearized_about, f"{name}.linearized_about")
-    yield from _provenance(name, item)
-
-
-def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
-    for index, source in enumerate(identified.provenance):
-        yield Line(f"{name}.provenance[{index}]", source.file, source.data, "")
-    for key in ("doubts", "accept_doubt"):
-        yield from describe_model(getattr(identified, key), f"{name}.{key}")
+def _identified(name: str, item: SpecModel) -> Iterator[Line]:
+    """List what is known of values that were identified, and where they come from."""
+    covers = COVERS if isinstance(item, AbstractEnvironmentSpec) else MOTOR_COVERS
+    for key in (key for key in _IDENTIFIED if key in type(item).model_fields):
+        value = getattr(item, key)
+        if key == "range_covers" and value is not None:
+            yield Line(f"{name}.{key}", value, covers[value], "")
+        elif key != "range_id":
+            yield from describe_model(value, f"{name}.{key}")
 
 
 def _ranged(name: str, written: RangedQuantity, si: Interval, unit: str) -> Iterator[Line]:
@@ -256,7 +217,13 @@ def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
 
 def describe_model(value: object, name: str = "") -> Iterator[Line]:
     """List every value of a part whose quantities need no conversion but that to SI."""
-    if isinstance(value, GainSpec):
+    if isinstance(value, AbstractEnvironmentSpec):
+        yield from _environment(name, value)
+    elif isinstance(value, RangedQuantity):
+        yield from _ranged(name, value, value.interval, _shown_unit(value.nominal))
+    elif isinstance(value, ProvenanceSpec):
+        yield Line(name, value.file, value.data, "")
+    elif isinstance(value, GainSpec):
         low, high, unit = value.min, value.max, _shown_unit(value.min)
         if value.fixed:
             yield Line(name, low.text, _text(low.si), unit)
@@ -269,15 +236,21 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
     elif isinstance(value, DeadlinesSpec):
         yield Line(name, f"at most {value}", f"command: {value.command}, job: {value.job}", "")
     elif isinstance(value, SpecModel):
+        hidden = () if name else ("kind", "name", "title")
         for field in type(value).model_fields:
-            if name or field not in ("kind", "name", "title"):
+            if field not in (*hidden, *_IDENTIFIED):
                 yield from describe_model(getattr(value, field), f"{name}.{field}".lstrip("."))
+        yield from _identified(name, value)
     elif isinstance(value, dict):
         for key, item in value.items():
             yield from describe_model(item, f"{name}.{key}")
     elif isinstance(value, tuple) and all(isinstance(item, Fraction) for item in value):
         if value:
             yield _coefficients(name, value)
+    elif isinstance(value, tuple) and all(isinstance(item, int) for item in value):
+        if value:
+            least, most = value
+            yield Line(name, str(least) if least == most else f"[{least}, {most}]", "", "samples")
     elif isinstance(value, tuple):
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")
@@ -287,7 +260,8 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
         yield _number(name, value)
     elif isinstance(value, bool):
         yield Line(name, str(value).lower(), "", "")
-    elif value is not None:
+    # The unit of commands where none is named.
+    elif value not in (None, THESIS_COMMAND):
         yield Line(name, str(value), "", "")
 
 

@@ -6,7 +6,6 @@ file is refused early. No scalar is ever turned into a float: decimals stay as w
 
 from __future__ import annotations
 
-import bisect
 import hashlib
 import json
 import re
@@ -117,7 +116,7 @@ def read_source(path: Path) -> str:
             remedy = "name a *.nrs.yaml file"
             raise refused("the file is not UTF-8 text", remedy=remedy) from None
         before = content[: error.start].decode("utf-8-sig")
-        place, remedy = _Places(before).at(len(before)), "save the file in the UTF-8 encoding"
+        place, remedy = _position(before, len(before)), "save the file in the UTF-8 encoding"
         message = f"byte 0x{content[error.start]:02x} is not UTF-8 text"
         raise refused(message, line=place.line, column=place.column, remedy=remedy) from None
     if not text.strip():
@@ -128,10 +127,8 @@ def read_source(path: Path) -> str:
 def _read_bytes(path: Path) -> bytes:
     refused = partial(SpecError, path=path)
     try:
-        if path.is_dir():
-            raise refused("this is a directory", remedy="name a *.nrs.yaml file in it")
         if path.exists() and not path.is_file():
-            raise refused("this is not a regular file", remedy="name a *.nrs.yaml file")
+            raise refused("this is not a file", remedy="name a *.nrs.yaml file")
         with open_regular(path) as file:
             return file.read(MAX_BYTES + 1)
     except FileNotFoundError:
@@ -199,22 +196,15 @@ def hash_meaning(said: object) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-class _Places:
-    """Line and column of every character offset.
+def _position(text: str, index: int) -> Position:
+    """Return line and column of a character."""
+    *before, line = re.split(r"\r\n|\n|\r", text[:index])
+    return Position(len(before) + 1, len(line) + 1)
 
-    Counted here rather than by the parser, which takes a few more characters for line breaks than
-    editors do.
-    """
 
-    def __init__(self, text: str) -> None:
-        breaks = re.finditer(r"\r\n|\n|\r", text)
-        self._starts = [0, *(match.end() for match in breaks)]
-        self._end = len(text)
-
-    def at(self, index: int) -> Position:
-        index = min(max(index, 0), self._end)
-        line = bisect.bisect_right(self._starts, index)
-        return Position(line, index - self._starts[line - 1] + 1)
+def _start(event: Event) -> Position:
+    mark = event.start_mark
+    return Position(mark.line + 1, mark.column + 1)
 
 
 class _Builder:
@@ -223,7 +213,6 @@ class _Builder:
     def __init__(self, text: str, path: Path | None) -> None:
         self._text = text
         self._path = path
-        self._places = _Places(text)
         self._events = self._checked_events()
         self.faults: list[Fault] = []
 
@@ -233,19 +222,18 @@ class _Builder:
             if isinstance(event, NodeEvent):
                 root = self._node(event)
         if root is None:
-            self._fail("the file holds no document", 0, "start from `nrs-design init`")
+            self._fail("the file holds no document", Position(1, 1), "start from `nrs-design init`")
         return root
 
-    def _note(self, message: str, index: int | Position, remedy: str) -> None:
+    def _note(self, message: str, place: Position, remedy: str) -> None:
         """Note a fault behind which the file can be read on."""
-        place = index if isinstance(index, Position) else self._places.at(index)
         self.faults.append(Fault(message, place.line, place.column, remedy))
         if len(self.faults) >= MAX_FAULTS:
             raise SpecError.of(self.faults, self._path)
 
-    def _fail(self, message: str, index: int | Position, remedy: str) -> NoReturn:
+    def _fail(self, message: str, place: Position, remedy: str) -> NoReturn:
         """Give up; an indentation that does not fit, for instance, leaves the rest unreadable."""
-        self._note(message, index, remedy)
+        self._note(message, place, remedy)
         raise SpecError.of(self.faults, self._path)
 
     def _raw_events(self) -> Iterator[Event]:
@@ -262,29 +250,30 @@ class _Builder:
             else:
                 index = getattr(error, "position", index)
             message, remedy, index = explain_syntax(error, self._text, index)
-            self._fail(message, index, remedy)
+            self._fail(message, _position(self._text, index), remedy)
         except (ValueError, ArithmeticError, LookupError):
             # Escapes beyond unicode and absurd version directives end so in the parser.
-            self._fail("this is not valid YAML", index, "check escapes and directives")
+            place, remedy = _position(self._text, index), "check escapes and directives"
+            self._fail("this is not valid YAML", place, remedy)
 
     def _checked_events(self) -> Iterator[Event]:
         self._check_size()
         depth = documents = nodes = 0
         for event in self._raw_events():
-            index = event.start_mark.index
+            place = _start(event)
             nodes += isinstance(event, NodeEvent)
             if nodes > MAX_NODES:
-                self._fail_large(index)
+                self._fail_large(place)
             if isinstance(event, DocumentStartEvent):
                 documents += 1
                 if documents > 1:
-                    self._fail("the file holds several documents", index, "keep one, without ---")
+                    self._fail("the file holds several documents", place, "keep one, without ---")
             elif isinstance(event, NodeEvent):
-                self._check_node(event, index)
+                self._check_node(event, place)
             depth += isinstance(event, SequenceStartEvent | MappingStartEvent)
             depth -= isinstance(event, CollectionEndEvent)
             if depth > MAX_DEPTH:
-                self._fail(f"nested deeper than {MAX_DEPTH} levels", index, "flatten the spec")
+                self._fail(f"nested deeper than {MAX_DEPTH} levels", place, "flatten the spec")
             yield event
 
     def _check_size(self) -> None:
@@ -294,36 +283,33 @@ class _Builder:
         followed by one more node.
         """
         for word in _WORD.finditer(self._text):
-            if word.end() - word.start() > MAX_SCALAR:
-                self._fail_long(word.end() - word.start(), word.start())
+            if len(word[0]) > MAX_SCALAR:
+                self._fail_long(len(word[0]), _position(self._text, word.start()))
         if self._text.count(",") + self._text.count("\n") > MAX_NODES:
-            self._fail_large(0)
+            self._fail_large(Position(1, 1))
 
-    def _fail_large(self, index: int) -> NoReturn:
+    def _fail_large(self, place: Position) -> NoReturn:
         remedy = "split it into several specs"
-        self._fail(f"the file holds more than {MAX_NODES} keys, values or lines", index, remedy)
+        self._fail(f"the file holds more than {MAX_NODES} keys, values or lines", place, remedy)
 
-    def _fail_long(self, length: int, index: int) -> NoReturn:
-        self._fail(
-            f"a text of {length} characters stands here, at most {MAX_SCALAR} are read",
-            index,
-            "shorten it",
-        )
+    def _fail_long(self, length: int, place: Position) -> NoReturn:
+        message = f"a text of {length} characters stands here, at most {MAX_SCALAR} are read"
+        self._fail(message, place, "shorten it")
 
-    def _check_node(self, event: NodeEvent, index: int) -> None:
+    def _check_node(self, event: NodeEvent, place: Position) -> None:
         if isinstance(event, ScalarEvent) and len(event.value) > MAX_SCALAR:
-            self._fail_long(len(event.value), index)
+            self._fail_long(len(event.value), place)
         if isinstance(event, AliasEvent):
-            self._note("aliases (*name) are not read", index, "write the value out")
+            self._note("aliases (*name) are not read", place, "write the value out")
         if event.anchor is not None:
-            self._note("anchors (&name) are not read", index, "remove the anchor")
+            self._note("anchors (&name) are not read", place, "remove the anchor")
         if getattr(event, "tag", None) is not None:
-            self._note("tags (!name) are not read", index, "remove the tag")
+            self._note("tags (!name) are not read", place, "remove the tag")
         if isinstance(event, ScalarEvent) and _SURROGATE.search(event.value):
-            self._note("a lone surrogate is not text", index, "remove the escape")
+            self._note("a lone surrogate is not text", place, "remove the escape")
 
     def _node(self, event: NodeEvent) -> Node:
-        place = self._places.at(event.start_mark.index)
+        place = _start(event)
         if isinstance(event, AliasEvent):
             return Scalar("", place)
         if isinstance(event, ScalarEvent):
@@ -347,7 +333,7 @@ class _Builder:
         keys: dict[str, Position] = {}
         children = self._children()
         for event in children:
-            key_place = self._places.at(event.start_mark.index)
+            key_place = _start(event)
             key = self._key(event, key_place)
             if key in keys:
                 self._note(

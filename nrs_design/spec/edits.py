@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
 
 from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence, steps_to
 
 Keys = tuple[str | int, ...]
 # A place, and what is written there; None leaves it out.
 Edit = tuple[Keys, Data | None]
+
+_SAID: ContextVar[tuple[str, tuple[Edit, ...]] | None] = ContextVar("said", default=None)
 
 # What may change beside identified values.
 NOT_IDENTIFIED = frozenset({"provenance", "accept_doubt", "range_id", "load_inertia"})
@@ -87,3 +93,24 @@ def in_one_line(said: Data) -> str:
     if isinstance(said, tuple):
         return f"[{', '.join(map(in_one_line, said))}]"
     return f"{{{', '.join(f'{key}: {in_one_line(value)}' for key, value in said.items())}}}"
+
+
+@contextmanager
+def saying_instead(file: Path, edits: Iterable[Edit]) -> Iterator[None]:
+    """Read a file as if somebody had written other values into it; other files as they are.
+
+    No file is written, names of others stay relative to its folder, and everything keeps its place.
+    """
+    token = _SAID.set((os.path.realpath(file), tuple(edits)))
+    try:
+        yield
+    finally:
+        _SAID.reset(token)
+
+
+def as_read(root: Node, file: Path) -> Node:
+    """Return the document of a file as it is to be read: changed within `saying_instead`."""
+    said = _SAID.get()
+    if said is None or said[0] != os.path.realpath(file):
+        return root
+    return with_edits(root, said[1])

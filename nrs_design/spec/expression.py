@@ -1,32 +1,26 @@
-"""Exact reader of matrix entries that are affine in parameters, such as ``3/4*k - m + 0.5``.
-
-A reader of its own, of four operators and parentheses: nothing is ever evaluated as code, and
-nothing passes through a float.
-"""
+"""Matrix entries that are affine in parameters, such as ``3/4*k - m + 0.5``, read exactly."""
 
 from __future__ import annotations
 
+import ast
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.affine import Affine
+from nrs_design.spec.algebra import Operators, read_algebra
 from nrs_design.spec.exact import UNSIGNED_DECIMAL_PATTERN, is_number, number_fault, parse_exact
 
 MAX_LENGTH = 200
-MAX_DEPTH = 20
 # Beyond these the entries leave the floats that the search for a proof uses.
 LARGEST = Fraction(10) ** 100
 
 EXPRESSION_PATTERN = r"^(?!.*/ *0+(?:\.0*)?(?![0-9.eE]))[A-Za-z0-9_.+*/() -]{1,200}$"
 """What an expression may hold, for the JSON Schema; no division by a written zero."""
 
-_TOKEN = re.compile(
-    rf"(?P<number>{UNSIGNED_DECIMAL_PATTERN})|(?P<name>[A-Za-z][A-Za-z0-9_]*)"
-    r"|(?P<sign>\*\*|[-+*/()^])"
-)
+_LEAF = re.compile(rf"{UNSIGNED_DECIMAL_PATTERN}|[A-Za-z][A-Za-z0-9_]*")
 _EXPECTED = (
     'write a number such as -0.25 or "1/6", or a sum of parameters times numbers, such as '
     '"3/4*k - m + 0.5"'
@@ -37,17 +31,62 @@ _OWN_PARAMETER = (
 )
 
 
-class _Token(NamedTuple):
-    kind: str
-    text: str
+@dataclass(frozen=True, slots=True)
+class Affine:
+    """An affine function of parameters; two are equal iff they are the same function."""
+
+    constant: Fraction  # Value where all parameters are zero
+    # Parameter names with their factors, sorted by name, none of them zero.
+    slopes: tuple[tuple[str, Fraction], ...] = ()
+
+    @classmethod
+    def of_parameter(cls, name: str) -> Affine:
+        """Return the function that is one parameter."""
+        return cls(Fraction(0), ((name, Fraction(1)),))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters that it depends on."""
+        return tuple(name for name, _ in self.slopes)
+
+    @property
+    def numbers(self) -> tuple[Fraction, ...]:
+        """The constant and the factors."""
+        return (self.constant, *(slope for _, slope in self.slopes))
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it depends on no parameter."""
+        return not self.slopes
+
+    def plus(self, other: Affine) -> Affine:
+        """Add another function."""
+        slopes = dict(self.slopes)
+        for name, slope in other.slopes:
+            slopes[name] = slopes.get(name, Fraction(0)) + slope
+        kept = tuple(sorted((name, slope) for name, slope in slopes.items() if slope))
+        return Affine(self.constant + other.constant, kept)
+
+    def times(self, factor: Fraction) -> Affine:
+        """Multiply by a number."""
+        if not factor:
+            return Affine(Fraction(0))
+        slopes = tuple((name, slope * factor) for name, slope in self.slopes)
+        return Affine(self.constant * factor, slopes)
+
+    def at(self, values: Mapping[str, Fraction]) -> Fraction:
+        """Evaluate at the given parameter values; a KeyError if one is missing."""
+        return self.constant + sum(
+            (slope * values[name] for name, slope in self.slopes), Fraction(0)
+        )
 
 
 def parse_affine(text: str) -> Affine:
     """Read a number or an expression that is affine in its parameters, such as ``-2 - k``.
 
-    Numbers, names, ``+ - * /`` and parentheses, at most 200 ASCII characters and 20 levels. One
-    factor of every product and every divisor must be constant. Which names are parameters is not
-    checked here. A `SpecError` for anything else.
+    Numbers, names, ``+ - * /`` and parentheses, at most 200 ASCII characters. One factor of every
+    product and every divisor must be constant. Which names are parameters is not checked here. A
+    `SpecError` for anything else.
     """
     if len(text) > MAX_LENGTH:
         raise SpecError(
@@ -58,10 +97,13 @@ def parse_affine(text: str) -> Affine:
         return Affine(parse_exact(text))
     if fault := number_fault(text):
         raise fault
-    tokens = _tokens(text)
-    function = _sum(tokens, text, 0)
-    if tokens:
-        raise _unexpected(tokens[-1], text)
+    if re.search(r"\^|\*\*", text):
+        raise _not_affine("it takes a power")
+    try:
+        function = read_algebra(text, _LEAF, _read_leaf, _OPERATORS)
+    except ValueError:
+        message = f"{quoted(text)} is not a number or an expression"
+        raise SpecError(message, remedy=_EXPECTED) from None
     # No float holds more: each literal is capped, but products of them grow.
     if any(abs(number) > LARGEST for number in function.numbers):
         raise SpecError(
@@ -70,102 +112,36 @@ def parse_affine(text: str) -> Affine:
     return function
 
 
-def _tokens(text: str) -> list[_Token]:
-    """Split into tokens, reversed so that the next one is at the end."""
-    tokens: list[_Token] = []
-    position = 0
-    while position < len(text):
-        if text[position] == " ":
-            position += 1
-            continue
-        match = _TOKEN.match(text, position)
-        if match is None:
-            raise SpecError(
-                f"{quoted(text)} is not a number or an expression: "
-                f"{quoted(text[position])} is not read",
-                remedy=_EXPECTED,
-            )
-        tokens.append(_Token(str(match.lastgroup), match[0]))
-        position = match.end()
-    return tokens[::-1]
+def _read_leaf(text: str) -> Affine:
+    return Affine.of_parameter(text) if text[0].isalpha() else Affine(parse_exact(text))
 
 
-def _sum(tokens: list[_Token], text: str, depth: int) -> Affine:
-    total = _product(tokens, text, depth)
-    while tokens and tokens[-1].text in ("+", "-"):
-        sign = 1 if tokens.pop().text == "+" else -1
-        total = total.plus(_product(tokens, text, depth).times(Fraction(sign)))
-    return total
-
-
-def _product(tokens: list[_Token], text: str, depth: int) -> Affine:
-    product = _factor(tokens, text, depth)
-    while tokens and tokens[-1].text in ("*", "/", "^", "**"):
-        operator = tokens.pop().text
-        if operator in ("^", "**"):
-            raise _not_affine(text, "it takes a power")
-        factor = _factor(tokens, text, depth)
-        combine = _multiply if operator == "*" else _divide
-        product = combine(product, factor, text)
-    return product
-
-
-def _multiply(left: Affine, right: Affine, text: str) -> Affine:
+def _multiply(left: Affine, right: Affine) -> Affine:
     if left.is_constant:
         return right.times(left.constant)
     if right.is_constant:
         return left.times(right.constant)
-    raise _not_affine(text, f"it multiplies {left.names[0]} by {right.names[0]}")
+    raise _not_affine(f"it multiplies {left.names[0]} by {right.names[0]}")
 
 
-def _divide(left: Affine, right: Affine, text: str) -> Affine:
+def _divide(left: Affine, right: Affine) -> Affine:
     if not right.is_constant:
-        raise _not_affine(text, f"it divides by {right.names[0]}")
+        raise _not_affine(f"it divides by {right.names[0]}")
     if right.constant == 0:
-        raise SpecError(f"{quoted(text)} divides by zero", remedy="use a nonzero divisor")
+        raise SpecError("the entry divides by zero", remedy="use a nonzero divisor")
     return left.times(1 / right.constant)
 
 
-def _factor(tokens: list[_Token], text: str, depth: int) -> Affine:
-    if depth > MAX_DEPTH:
-        raise SpecError(
-            f"{quoted(text)} is nested deeper than {MAX_DEPTH} levels",
-            remedy="remove parentheses and repeated signs",
-        )
-    if not tokens:
-        raise SpecError(f"{quoted(text)} ends too early", remedy=_EXPECTED)
-    token = tokens.pop()
-    if token.text in ("+", "-"):
-        return _factor(tokens, text, depth + 1).times(Fraction(1 if token.text == "+" else -1))
-    if token.text == "(":
-        inner = _sum(tokens, text, depth + 1)
-        if not tokens:
-            raise SpecError(f"a parenthesis of {quoted(text)} is not closed", remedy="close it")
-        if tokens[-1].text != ")":
-            raise _unexpected(tokens[-1], text)
-        tokens.pop()
-        return inner
-    if token.kind == "number":
-        return Affine(parse_exact(token.text))
-    if token.kind == "name":
-        return Affine.of_parameter(token.text)
-    raise _unexpected(token, text)
+_OPERATORS: Operators[Affine] = {
+    ast.UAdd: lambda a: a,
+    ast.USub: lambda a: a.times(Fraction(-1)),
+    ast.Add: Affine.plus,
+    ast.Sub: lambda a, b: a.plus(b.times(Fraction(-1))),
+    ast.Mult: _multiply,
+    ast.Div: _divide,
+}
 
 
-def _not_affine(text: str, reason: str) -> SpecError:
-    return SpecError(
-        f"{quoted(text)} is not affine in the parameters: {reason}", remedy=_OWN_PARAMETER
-    )
-
-
-def _unexpected(token: _Token, text: str) -> SpecError:
-    if token.kind in ("number", "name"):
-        return SpecError(
-            f"{quoted(text)} is not a number or an expression: there is no operator before "
-            f"{quoted(token.text)}",
-            remedy="write products with *, such as 2*k",
-        )
-    return SpecError(
-        f"{quoted(text)} is not a number or an expression: {quoted(token.text)} is out of place",
-        remedy=_EXPECTED,
-    )
+def _not_affine(reason: str) -> SpecError:
+    message = f"the entry is not affine in the parameters: {reason}"
+    return SpecError(message, remedy=_OWN_PARAMETER)

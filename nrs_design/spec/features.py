@@ -15,8 +15,6 @@ from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in, touched_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
-from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.spec.sensor import SensorSpec
 
 T = TypeVar("T")
 
@@ -42,9 +40,7 @@ def contacted_environments(spec: Spec) -> Iterator[ContactedEnvironment]:
         yield ContactedEnvironment(name, spec.environments[name])
 
 
-def _given(
-    phrase: str, at: str, without: str, undo: Callable[[Spec], Spec] | None = None
-) -> Feature[Spec]:
+def _given(phrase: str, at: str, without: str) -> Feature[Spec]:
     """Return the feature that a field is given, by its keys; parts on the way may be missing."""
     first, _, rest = at.partition(".")
 
@@ -52,7 +48,7 @@ def _given(
         part = getattr(spec, first)
         return part is not None and (not rest or attrgetter(rest)(part) is not None)
 
-    return Feature(phrase, at, without, find, undo)
+    return Feature(phrase, at, without, find)
 
 
 def _contacted(
@@ -87,11 +83,7 @@ def _at_once(
 
 
 def _controller(
-    phrase: str,
-    key: str,
-    without: str,
-    holds: Callable[[ControllerSpec], object],
-    undo: Callable[[Spec], Spec] | None = None,
+    phrase: str, key: str, without: str, holds: Callable[[ControllerSpec], object]
 ) -> Feature[Spec]:
     """Return the feature of the first such controller, at one of its keys."""
     return Feature(
@@ -99,7 +91,6 @@ def _controller(
         f"controllers.{{0}}{key}",
         without,
         lambda s: _first(name for name, c in s.controllers.items() if holds(c)),
-        undo,
     )
 
 
@@ -140,35 +131,14 @@ def _constants(spec: Spec) -> Iterator[tuple[str, ...]]:
     yield from (at for at, times in spec.late_times.items() if times.is_constant)
 
 
-# What is advised where a force is not filtered.
-_FILTERED = SensorSpec.model_validate({"filter": {"cutoff": "30 Hz"}})
-# What is advised where a loop is not sampled.
-_SAMPLES = SamplingSpec.model_validate({"period": "2 ms", "delay": 0})
-
-
-def _without_springs(spec: Spec) -> Spec:
-    """Return a spec whose controllers have no springs."""
-    controllers = {
-        name: c.model_copy(update={"Kt": None}) if c.sprung else c
-        for name, c in spec.controllers.items()
-    }
-    return spec.model_copy(update={"controllers": controllers})
-
-
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
-SAMPLED = _given(
-    "a sampled loop",
-    "sampling",
-    "leave sampling out",
-    lambda s: s.model_copy(update={"sampling": None}),
-)
+SAMPLED = _given("a sampled loop", "sampling", "leave sampling out")
 CONTINUOUS = _F(
     "continuous time",
     "",
     "add `sampling: {{period: 2 ms, delay: 0}}`",
     lambda s: s.sampling is None,
-    lambda s: s.model_copy(update={"sampling": _SAMPLES}),
 )
 TWO_PERIODS = _F(
     "an outer_period",
@@ -311,9 +281,7 @@ DAMPED_FORCE = _F(
     "use an elastic environment for force controllers",
     _damped_force,
 )
-SPRUNG = _controller(
-    "the spring Kt of {0}", ".Kt", "leave Kt out", lambda c: c.sprung, _without_springs
-)
+SPRUNG = _controller("the spring Kt of {0}", ".Kt", "leave Kt out", lambda c: c.sprung)
 RELAXED = _controller(
     "{0!r}, an impedance controller without a spring,",
     ".Kt",
@@ -342,7 +310,6 @@ UNFILTERED = _F(
     "sensor.filter",
     "add `sensor: {{filter: {{cutoff: 30 Hz}}}}`",
     lambda s: not FILTER.find(s),
-    lambda s: s.model_copy(update={"sensor": _FILTERED}),
 )
 
 DISTURBED = _given("bounds under disturbances", "disturbances", "leave disturbances out")

@@ -22,11 +22,10 @@ from nrs_design.spec.goals import (
 )
 from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION, NOT_CONTROLLERS, OF_CORNERS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
-from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import commands_in
 from nrs_design.spec.quantity import PI_BETWEEN, Quantity
 from nrs_design.spec.sampling import LONGEST_DELAY
-from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
+from nrs_design.spec.scenario_checks import LOGIC_CHECKS, SCENARIO_CHECKS
 from nrs_design.spec.switching import switching_checks
 
 
@@ -356,22 +355,15 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "the band reaches {0}, and half the sampling rate is {1} Hz",
         "end it below {1} Hz, or sample more often",
     ),
-    Row(
-        "goals.peak_torque",
-        lambda s: getattr(s.goals, "peak_torque", None) and s.disturbances is None,
-        "peak_torque is wanted, but nothing is said to disturb the loop",
-        "add `disturbances: {{command: 8 deg/s}}`",
-    ),
     # The bound holds for what is declared alone: under friction, of a robot that nobody moves.
     Row(
-        "disturbances",
+        "goals.peak_torque",
         lambda s: (
             getattr(s.goals, "peak_torque", None)
-            and s.disturbances is not None
-            and s.disturbances.command is None
+            and getattr(s.disturbances, "command", None) is None
         ),
-        "peak_torque is wanted, but the bound would be that of a loop without a command",
-        "add `command: 8 deg/s`",
+        "peak_torque is wanted, and the bound would be that of a loop without a command",
+        "add `disturbances: {{command: 8 deg/s}}`",
     ),
     Row(
         "{0}.{1}",

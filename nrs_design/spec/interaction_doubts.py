@@ -13,8 +13,6 @@ from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.quantity import is_less
 
-# Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
-_HARDEST = 10
 # So near given gains are to the loop that is asked for: less is rounding.
 _NEAR = 0.05
 
@@ -31,30 +29,12 @@ def _untouched(spec: Spec) -> Iterator[tuple[Location, str]]:
     return ((("environments", name), name) for name in spec.environments if name not in touched)
 
 
-def _late_threshold(spec: Spec) -> Iterator[tuple[object, ...]]:
-    """Yield thresholds that the torque reaches only where it is too large already."""
-    logic = spec.mode_logic
-    limit = spec.limits.torque
-    for index, switch in enumerate(() if logic is None else logic.switches, 1):
-        above = None if switch.torque is None else switch.torque.above
-        if above is not None and above.not_below > limit.not_above:
-            yield index, switch.source, switch.target, above.text, limit.text
-
-
 def _slow(spec: Spec) -> str | None:
     """Return the speed at the limit of the command, if the axis has to be faster."""
     if spec.limits.command is None or spec.actuator is None:
         return None
     reached = spec.actuator.gain.range[1].not_above * spec.limits.command.not_above
     return rounded_up(reached) if reached < spec.limits.velocity.not_below else None
-
-
-def _hard(spec: Spec) -> tuple[str, str] | None:
-    """Return a wanted force that is out of proportion: some more than the limit is the very use."""
-    force, limit = getattr(spec.goals, "initial_force", None), spec.limits.torque
-    if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
-        return None
-    return force.text, limit.text
 
 
 def _older(spec: Spec) -> tuple[str, str] | None:
@@ -116,13 +96,6 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "list it in the contacts of a controller, or remove it",
     ),
     Row(
-        "mode_logic.switches",
-        _late_threshold,
-        "switch {0} of the mode logic, from {1} to {2}, waits for a torque of {3}, above "
-        "limits.torque of {4}",
-        "lower the threshold by noise and by what the torque moves in its age",
-    ),
-    Row(
         "goals.delay",
         _older,
         "goals.delay is {0}, and force samples are declared to be at most {1} old",
@@ -135,14 +108,6 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "limits.velocity of {s.limits.velocity.text}: the axis cannot follow a command at that "
         "limit",
         "raise limits.command, or lower limits.velocity",
-    ),
-    Row(
-        "goals.initial_force",
-        _hard,
-        f"goals.initial_force of {{0}} is more than {_HARDEST} times limits.torque of {{1}}: is "
-        "that its unit?",
-        "what is shown is that motions from there decay, not that the torque is within its limit; "
-        "write `largest` for as much as is found",
     ),
     _unbounded(has.TWO_PERIODS, "an outer_period"),
     _unbounded(has.MISSES, "missed deadlines"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from types import MappingProxyType
 from typing import Annotated, Literal
@@ -13,6 +13,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
 from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.check import Row
 from nrs_design.spec.controllers import (
     AntiWindupSpec,
     ControllerSpec,
@@ -23,12 +24,10 @@ from nrs_design.spec.controllers import (
 )
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Digits, Label, Name, Title
-from nrs_design.spec.free import FreeGainsSpec
+from nrs_design.spec.fields import Digits, Label, Name, Positive, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
-from nrs_design.spec.model import ExpandedBy, SpecModel, optional, required
-from nrs_design.spec.monitoring import MonitoringSpec
+from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.motion import (
     ActuatorSpec,
     FollowingSpec,
@@ -43,9 +42,9 @@ from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import RangedQuantity, Times, ends_of
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
-from nrs_design.spec.sensor import SensorSpec
+from nrs_design.spec.sensor import MonitoringSpec, SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
-from nrs_design.spec.threshold_logic import ThresholdLogicSpec, check_type
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 from nrs_design.spec.units import THESIS_COMMAND
 
 MAX_ENTRIES = 64
@@ -63,6 +62,44 @@ NOT_CONTROLLERS = {
 }
 # What stands behind the contact in names of modes: ends of ranges, ages, and points.
 OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case)-\d+")
+
+
+class FactorBounds(SpecModel, stronger="beside"):
+    """Bounds of a gain, as factors on the one that the spec gives."""
+
+    min: Positive = required("smallest factor on the given gain, no unit")
+    max: Positive = required("largest factor on the given gain, no unit")
+
+    checks = (
+        Row(
+            "",
+            lambda s: not s.min <= 1 <= s.max,
+            "the given gain itself is not within these factors",
+            "let min be at most 1, and max at least 1",
+        ),
+    )
+
+
+class FreeGainsSpec(SpecModel, stronger="beside"):
+    """Which gains of one controller are free, and how far."""
+
+    Kp: FactorBounds | None = optional("of the motion loop, or of the force")
+    Kd: FactorBounds | None = optional("of the motion loop")
+    Ki: FactorBounds | None = optional("of the force")
+    Kt: FactorBounds | None = optional("spring of an impedance controller")
+
+    checks = (
+        Row(
+            "",
+            lambda s: not dict(s.given()),
+            "no gain is named",
+            "name one, such as `Kp: {{min: 0.6, max: 1.6}}`",
+        ),
+    )
+
+    def given(self) -> Iterator[tuple[str, FactorBounds]]:
+        """Yield the gains that are free, with their bounds."""
+        return ((gain, bounds) for gain, bounds in self if bounds is not None)
 
 
 class DesignSpec(SpecModel, stronger="beside"):
@@ -147,7 +184,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         "state of the contact: the deflection, which stays continuous when the stiffness switches",
         "deflection",
     )
-    mode_logic: Annotated[ThresholdLogicSpec, ExpandedBy(check_type)] | None = optional(
+    mode_logic: ThresholdLogicSpec | None = optional(
         "what decides which controller is active; `switching: mode-logic` lets the "
         "proof be about the switching signals that it can give",
         unsaid="most",

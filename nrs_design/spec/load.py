@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from nrs_design.axis import about
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
-    Data,
     Mapping,
     Node,
     Position,
@@ -27,10 +25,9 @@ from nrs_design.spec.document import (
     steps_to,
     to_data,
 )
-from nrs_design.spec.faults import MAX_LISTED, did_you_mean
-from nrs_design.spec.instead import as_read
-from nrs_design.spec.model import SpecModel
-from nrs_design.spec.places import faults_between, file_faults
+from nrs_design.spec.edits import as_read
+from nrs_design.spec.faults import did_you_mean
+from nrs_design.spec.places import file_faults
 from nrs_design.spec.task_space import (
     KIND,
     TaskSpaceSpec,
@@ -186,37 +183,9 @@ def _validated(model: type[Any], root: Node, syntax: tuple[Fault, ...], path: Pa
             spec = model.model_validate(said)
         except ValidationError as error:
             found = file_faults(error, model, root)
-            # So many are enough to mend, and whoever wrote more need not be told all at once.
-            if len(found) < MAX_LISTED:
-                parts = valid_parts(model, said)
-                found = tuple(dict.fromkeys((*found, *faults_between(parts, model, root))))
     if syntax or found:
         raise _refusal(syntax, found, path)
     return spec
-
-
-def valid_parts(model: type[SpecModel], said: Data) -> SpecModel:
-    """Return a spec without the parts that are not valid: to ask for one is an AttributeError."""
-    valid: dict[str, Any] = {}
-    missing: list[str] = []
-    for name in model.model_fields:
-        if not isinstance(said, dict) or name not in said:
-            continue
-        try:
-            valid[name] = _part_of(model, name).validate_python(said[name])
-        except ValidationError:
-            missing.append(name)
-    spec = model.model_construct(**valid)
-    for name in missing:
-        # Where a part is not valid, its default says nothing.
-        spec.__dict__.pop(name, None)
-    return spec
-
-
-@cache
-def _part_of(model: type[SpecModel], name: str) -> TypeAdapter[object]:
-    """Return what judges one field of a spec; to build it takes longer than to ask it."""
-    return TypeAdapter(model.model_fields[name].rebuild_annotation())
 
 
 def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | None) -> SpecError:

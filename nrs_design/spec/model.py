@@ -46,8 +46,7 @@ class SpecModel(BaseModel):
 
     # Of fields that say nothing of it themselves: what the first line of a class says.
     declared: ClassVar[Declared] = Declared()
-    # What must not be, whatever its fields are for themselves. Each row asks for the fields that it
-    # is about only, so that faults between valid fields are told although others are not valid.
+    # What must not be, whatever its fields are for themselves.
     checks: ClassVar[tuple[Row[Any], ...]] = ()
     # What is allowed, and probably not meant.
     warnings: ClassVar[tuple[Row[Any], ...]] = ()
@@ -61,7 +60,7 @@ class SpecModel(BaseModel):
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:
-        run_checks(self.checks, self, self.warnings)
+        run_checks(self.checks, self)
         return self
 
 

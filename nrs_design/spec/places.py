@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from nrs_design.errors import Fault
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import find_faults
 from nrs_design.spec.document import Node, Position, steps_to
 from nrs_design.spec.faults import FAULT, Location, did_you_mean
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ParsedBy
 
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type"}
@@ -44,16 +44,6 @@ _OTHER_KEYS = {
         "gain": "k factor",
     }.items()
 }
-# What somebody may want of a proof, by words in a key of goals, and where a spec says it.
-_NO_GOALS = {
-    "stiff": "declare it, `environments: {NAME: {stiffness: {nominal: ..., range: [..., ...]}}}`: "
-    "goals are proved over the whole range; `certify-switching --margin` finds how far it holds",
-    "toleran": "declare it, ranges of gain and time_constant of the actuator: goals are proved "
-    "over the whole ranges",
-    "latency": "declare it, `sampling: {latency: [..., ...]}`: goals are proved over all of it",
-    "passiv": "no gains are chosen by it: `optimize` and `report` tell up to which frequency the "
-    "law is passive; max_impedance_error and transparency are goals for what the robot displays",
-}
 # What `identify` writes into a section: it is listed after what people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
 # How deep that tag is: below a name.
@@ -62,28 +52,14 @@ _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
 def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return what validation reports as faults of the file, each with its place, in file order."""
-    each = (
-        details | {"ctx": context}
+    """Return what validation reports as faults of the file, each once with its place, in order."""
+    resolved = {
+        _resolve(details | {"ctx": context}, model, root)
         for details in _genuine(error)
         for context in details.get("ctx", {}).get("all", [details.get("ctx", {})])
-    )
-    return _in_file_order(each, model, root)
-
-
-def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return the faults between parts of a spec; checks of parts that it lacks are left out."""
-    contexts = find_faults(spec.checks, spec, spec.warnings, partial=True)
-    details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
-    return _in_file_order((details | {"ctx": c} for c in contexts), model, root)
-
-
-def _in_file_order(
-    each: Iterable[ErrorDetails], model: type[BaseModel], root: Node
-) -> tuple[Fault, ...]:
-    """Return faults, each once, by line, column and message."""
-    resolved = sorted({_resolve(details, model, root) for details in each})
-    return tuple(Fault(message, line, column, remedy) for line, column, message, remedy in resolved)
+    }
+    each = sorted(resolved)
+    return tuple(Fault(message, line, column, remedy) for line, column, message, remedy in each)
 
 
 def _genuine(error: ValidationError) -> list[ErrorDetails]:
@@ -113,11 +89,26 @@ def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> boo
     return called or bool(difflib.get_close_matches(name, siblings, n=1))
 
 
-def _of_keys(word: str, fields: Collection[str]) -> str:
-    """Suggest the key that is meant, also by another word for it, and list the keys."""
+def _of_keys(word: str, fields: Mapping[str, FieldInfo | None]) -> str:
+    """Suggest the key that is meant, by another word for it or one level deeper; list the keys."""
     keys = sorted(fields, key=_IDENTIFIED.__contains__)
     called = [key for key in keys if word.lower() in _OTHER_KEYS.get(key, ())]
-    return did_you_mean(word, keys, "keys here are", called)
+    meant = did_you_mean(word, keys, "keys here are", called)
+    parts = {key: (field.annotation, *field.metadata) for key, field in fields.items() if field}
+    inside = [key for key, part in parts.items() if word in _keys_below(*part)]
+    if not inside or meant.startswith("did you mean"):
+        return meant
+    return f"it belongs inside {' or '.join(inside)}, as in `{inside[0]}: {{{word}: ...}}`; {meant}"
+
+
+def _keys_below(*parts: Any) -> Iterator[str]:
+    """Yield the keys of what a field may be, in any form in which it may be written."""
+    for part in parts:
+        if isinstance(part, ParsedBy):
+            for form in (part.schema or {}).get("anyOf", ()):
+                yield from form.get("properties", ())
+        elif get_origin(part) not in (dict, tuple):
+            yield from (*getattr(part, "model_fields", ()), *_keys_below(*get_args(part)))
 
 
 def _resolve(
@@ -156,14 +147,10 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         return f"{where}: {context['message']}" if where else context["message"], context["remedy"]
     if kind == "missing":
         name = str(location[-1])
-        field = fields_at(model, details["loc"][:-1]).get(name, "")
-        return f"`{where}` is missing", f"add {name}: {field}"
+        field = _fields_at(model, details["loc"][:-1]).get(name)
+        return f"`{where}` is missing", f"add {name}: {field.description if field else ''}"
     if kind == "extra_forbidden":
-        fields, key = fields_at(model, details["loc"][:-1]), str(location[-1])
-        if location[-2:-1] == ("goals",):
-            declared = (remedy for word, remedy in _NO_GOALS.items() if word in key.lower())
-            if (remedy := next(declared, None)) is not None:
-                return f"`{where}` is no goal", remedy
+        fields, key = _fields_at(model, details["loc"][:-1]), str(location[-1])
         return f"unknown key `{where}`", _of_keys(key, fields)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         return _tag_words(where, _CHOICES[str(location[0])], details)
@@ -174,9 +161,9 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         remedy = f"write {context['expected']}"
         return f"{where}: {quoted(value)} is not known", remedy
     if kind in _MAPPINGS:
-        keys = {"name": ""}
+        keys = ["name"]
         if kind != "dict_type":
-            keys = fields_at(model, details["loc"], needed=True)
+            keys = [*_fields_at(model, details["loc"], needed=True)]
         listing = ", ".join(f"{key}: ..." for key in keys)
         return (
             f"{where}: expected a mapping, not {_shape(value)}",
@@ -225,10 +212,10 @@ def dotted(location: Iterable[int | str]) -> str:
     return text.removeprefix(".")
 
 
-def fields_at(
+def _fields_at(
     model: type[BaseModel], location: Location, *, needed: bool = False
-) -> dict[str, str]:
-    """Names and descriptions of the keys at a location as validation reports it, tags included.
+) -> dict[str, FieldInfo | None]:
+    """Keys and fields at a location as validation reports it, tags included.
 
     `needed`: only those that must be there; all, if none must.
     """
@@ -236,14 +223,14 @@ def fields_at(
         fields = list(model.model_fields.items())
         if needed:
             fields = [item for item in fields if item[1].is_required()] or fields
-        return {field.alias or name: field.description or "" for name, field in fields}
+        return {field.alias or name: field for name, field in fields}
     field = model.model_fields.get(str(location[0]))
     arms = _models_in(field.annotation) if field else []
     rest = location[1:]
     if location[0] in _CHOICES:
         key = _CHOICES[str(location[0])]
         if len(rest) < _DEPTH:
-            return {key: ""}
+            return {key: None}
         tag = rest[_DEPTH - 1]
         arms = [arm for arm in arms if tag in get_args(arm.model_fields[key].annotation)]
         rest = rest[_DEPTH:]
@@ -251,7 +238,7 @@ def fields_at(
         rest = rest[1:]
     while rest and isinstance(rest[0], int):
         rest = rest[1:]
-    return fields_at(arms[0], rest, needed=needed) if arms else {}
+    return _fields_at(arms[0], rest, needed=needed) if arms else {}
 
 
 def _models_in(annotation: Any) -> list[type[BaseModel]]:

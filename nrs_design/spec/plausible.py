@@ -151,7 +151,7 @@ class Doubt:
 def doubt_spec(spec: SpecModel) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
     yield from (Doubt(at, text) for at, text in doubt_sizes(spec))
-    for found in find_faults(spec.warnings, spec, spec.checks):
+    for found in find_faults(spec.warnings, spec):
         yield Doubt(found["at"], f"{found['message']} ({found['remedy']})")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -13,7 +12,7 @@ from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit, respelt
+from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, has_unknown, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30
@@ -96,6 +95,7 @@ class QuantityKind:
     example: str  # A quantity of this kind
     # Advice for units that are often written instead; ``{value}`` is the number as written.
     confusions: Mapping[str, str] = field(default_factory=dict)
+    reason: str = ""  # Before what is advised else
     # Whether the SI value must be rational, as everything that enters a proof; then units with a
     # factor of pi (``deg``, ``Hz``) are refused.
     rational: bool = True
@@ -126,7 +126,12 @@ class QuantityKind:
                 return advice.format(value=value)
         if self.is_about_commands:
             return f"write {written_as(self.units).format(value=value)}"
-        return f"write it in {' or '.join(self.units)}, such as {self.example!r}"
+        return f"{self.reason}write it in {' or '.join(self.units)}{self.such}"
+
+    @property
+    def such(self) -> str:
+        """An example behind advice; none where its unit depends on the motor."""
+        return "" if self.is_about_commands else f", such as {self.example!r}"
 
     @property
     def is_about_commands(self) -> bool:
@@ -155,26 +160,14 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
     try:
         quantity = Quantity(text, value, unit)
     except SpecError as error:
-        if (written := respelt(unit)) is None:
+        if not has_unknown(unit):
             raise
-        raise SpecError(error.message, remedy=_meant(written, kind)) from None
+        units = f"{kind.name} is written in {' or '.join(kind.units)}{kind.such}"
+        guess = guess_unit(unit)
+        if guess is not None and kind.accepts(parse_unit(guess).dimension):
+            units = f"did you mean {guess}? {units}"
+        raise SpecError(error.message, remedy=units) from None
     return _checked_kind(quantity, kind)
-
-
-def _meant(written: str, kind: QuantityKind) -> str:
-    """Advise the unit that is most like the one written, of those that measure this kind."""
-    try:
-        unit = parse_unit(written)
-    except SpecError:
-        pass
-    else:
-        if kind.accepts(unit.dimension) and not (kind.rational and unit.pi_power):
-            return f"did you mean {written}?"
-    longer = [unit for unit in kind.units if unit.startswith(f"{written}/")]
-    near = longer or difflib.get_close_matches(written, kind.units, n=1)
-    such = "" if kind.is_about_commands else f", such as {kind.example!r}"
-    meant = f"did you mean {near[0]}? " if near else ""
-    return f"{meant}{kind.name} is written in {' or '.join(kind.units)}{such}"
 
 
 def _checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
@@ -219,15 +212,11 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
             remedy=f"write '{glued[1]} {glued[2]}'",
         )
     parse_exact(text)
-    unit = kind.example.partition(" ")[2]
-    remedy = f"write '{text} {unit}' if that is the unit meant"
-    if kind.units == ("N*m/rad", "N/m"):  # Of an axis that turns.
-        remedy = f"write '{text} N/m' beside a lever_arm, '{text} N*m/rad' without one"
-    if kind.is_about_commands:
-        remedy = f"write {written_as(kind.units).format(value=text)}"
-    if kind.units == ("m",):
-        remedy = f"write '{text} mm' or '{text} m', whichever is meant"
-    expected = " or ".join(kind.units)
+    units = kind.units
+    if not kind.is_about_commands:
+        units = tuple(dict.fromkeys((kind.example.partition(" ")[2], *units)))
+    expected, written = " or ".join(kind.units), " or ".join(f"'{text} {unit}'" for unit in units)
+    remedy = f"write {written}, " + ("whichever is meant" if units[1:] else "if that is the unit")
     return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Any, Literal, NamedTuple
-
-from pydantic_core import PydanticCustomError
 
 from nrs_design.axis import current
 from nrs_design.errors import SpecError
@@ -14,7 +13,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
-from nrs_design.spec.faults import as_text, fault, reported
+from nrs_design.spec.faults import all_of, as_text, fault, reported
 from nrs_design.spec.model import (
     ExpandedBy,
     ParsedBy,
@@ -24,7 +23,7 @@ from nrs_design.spec.model import (
     pair_schema,
     required,
 )
-from nrs_design.spec.parameters import Switch
+from nrs_design.spec.parameters import BOUND_CHECKS, RANGE_CHECKS, Switch, range_around
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -32,9 +31,9 @@ from nrs_design.spec.quantity import (
     is_less,
     parse_quantity,
 )
-from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS, range_around
 
-Reader = Callable[[object], Quantity]
+# Reads a value that stands at a place, for faults.
+Reader = Callable[..., Quantity]
 
 
 def read_quantity(
@@ -50,18 +49,14 @@ def read_quantity(
         quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
+            above = f"write a number above zero{kind.such}"
             raise SpecError(
                 f"{quoted(quantity.text)} must be {bound}",
-                remedy="check the sign" if quantity.value else _above_zero(kind),
+                remedy="check the sign" if quantity.value else above,
             )
         return quantity
 
     return reported(read, *at)
-
-
-def _above_zero(kind: QuantityKind) -> str:
-    such = "" if kind.is_about_commands else f", such as {kind.example!r}"
-    return f"write a number above zero{such}"
 
 
 def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
@@ -70,7 +65,7 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
 
 
 def _reader(kind: QuantityKind, **signs: bool) -> Reader:
-    return lambda value: read_quantity(value, kind, **signs)
+    return lambda value, *at: read_quantity(value, kind, *at, **signs)
 
 
 def _one(kind: QuantityKind, **signs: bool) -> ParsedBy:
@@ -99,8 +94,6 @@ def _or_largest(kind: QuantityKind) -> ParsedBy:
 
 
 def _as_is(value: object) -> Quantity:
-    if isinstance(value, PydanticCustomError):
-        raise value
     if not isinstance(value, Quantity):
         raise fault("expected a quantity", "write a number, a space and a unit")
     return value
@@ -180,7 +173,7 @@ def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = Tr
     def read(value: object) -> object:
         if isinstance(value, str):
             return dict.fromkeys(keys, reader(value))
-        return read_entries(value, tuple(keys), reader)
+        return _read_keys(value, dict.fromkeys(keys, reader))
 
     single = quantity_schema(kind)
     described = {key: single | {"description": text} for key, text in keys.items()}
@@ -194,16 +187,13 @@ def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> Exp
     def read(value: object) -> object:
         if isinstance(value, str):
             return {"nominal": reader(value)}
-        entries = read_entries(value, ("nominal",), reader)
-        if isinstance(entries, dict) and "varies" in entries and not constant:
+        if isinstance(value, dict) and "varies" in value and not constant:
             raise fault(
                 "no proof is about whether this value changes while the robot runs",
                 "remove varies: it is for numbers of the motor and of environments",
                 "varies",
             )
-        if isinstance(entries, dict) and "range" in entries:
-            entries["range"] = read_range(entries["range"], reader)
-        return entries
+        return _read_keys(value, {"nominal": reader, "range": partial(_read_range, reader)})
 
     single = quantity_schema(kind)
     each = {"nominal": single, "range": pair_schema(single), "varies": {"type": "boolean"}}
@@ -215,29 +205,19 @@ def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> Exp
     return ExpandedBy(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
 
-# A fault stands in for its quantity until the model reports it together with the others.
-QuantityOrFault = Quantity | PydanticCustomError
-
-
-def read_entries(value: object, keys: tuple[str, ...], reader: Reader) -> object:
+def _read_keys(value: object, readers: Mapping[str, Callable[..., object]]) -> object:
     """Read the entries that are quantities; what else is wrong is left to the model."""
     if not isinstance(value, dict):
         return value
-    return value | {key: _read_or_fault(reader, value[key]) for key in value if key in keys}
+    reads = {key: partial(readers[key], value[key], key) for key in value if key in readers}
+    return value | dict(zip(reads, all_of(*reads.values()), strict=True))
 
 
-def read_range(value: object, reader: Reader) -> tuple[QuantityOrFault, ...]:
+def _read_range(reader: Reader, value: object, *at: str) -> tuple[Quantity, ...]:
     """Read both ends of a range."""
     if not isinstance(value, tuple | list) or len(value) != 2:
-        raise fault("expected two quantities", "write [lowest, highest]", "range")
-    return tuple(_read_or_fault(reader, end) for end in value)
-
-
-def _read_or_fault(reader: Reader, value: object) -> QuantityOrFault:
-    try:
-        return reader(value)
-    except PydanticCustomError as error:
-        return error
+        raise fault("expected two quantities", "write [lowest, highest]", *at)
+    return tuple(all_of(*(partial(reader, end, *at, i) for i, end in enumerate(value))))
 
 
 class Times(NamedTuple):

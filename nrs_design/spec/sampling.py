@@ -21,17 +21,12 @@ from nrs_design.spec.units import command_unit
 LONGEST_DELAY = 10
 # There is a function for every sample of the faster loop in a period of the slower one.
 LARGEST_RATIO = 50
-_DOTTED = re.compile(r"([0-9]+) *\.\. *([0-9]+)")
 _TIME = re.compile(r"\S+ *[mun]?s")
 _FORM = f"write a number of samples from 0 to {LONGEST_DELAY}, or [smallest, largest]"
 
 
 def _read_delay(value: object) -> tuple[int, int]:
     """Read one number of samples, or the smallest and the largest."""
-    if isinstance(value, str) and (dotted := _DOTTED.fullmatch(value)):
-        raise fault(
-            f"{value!r} is not how a range is written", "write [{}, {}]".format(*dotted.groups())
-        )
     ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
     if len(ends) != 2:
         raise fault("expected a number of samples, or two of them", _FORM)

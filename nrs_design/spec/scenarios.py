@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import PurePosixPath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field
 
@@ -19,48 +19,46 @@ from nrs_design.spec.model import ParsedBy, SpecModel, optional, pair_schema, re
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
+T = TypeVar("T")
+
 MAX_POINTS, MAX_SURFACES, LONGEST = 1000, 16, 3600
 LARGEST_SEED = 2**32 - 1
 
 Points = tuple[tuple[Quantity, Quantity], ...]
 
 
-def _read_points(value: object) -> Points:
-    """Read ``[[time, velocity], ...]``; times never fall."""
-    if not isinstance(value, list | tuple) or not 2 <= len(value) <= MAX_POINTS:
-        raise fault(
-            "expected a list of breakpoints, two at least",
-            "write [[0 s, 0 deg/s], [1 s, 8 deg/s], ...]",
-        )
-    points = tuple(all_of(*(partial(_read_point, i, item) for i, item in enumerate(value))))
-    for i, (time, _) in enumerate(points):
-        if is_less(time, points[i - 1][0]) if i else time.value:
-            remedy = "begin at 0 s, and let times never fall; the same time twice is a jump"
+def _read_timed(
+    value: object, least: int, form: str, read: Callable[[object, int], T], *, jumps: bool = False
+) -> tuple[tuple[Quantity, T], ...]:
+    """Read pairs of a time and something else; times rise from zero, or stay where it jumps."""
+    if not isinstance(value, list | tuple) or not least <= len(value) <= MAX_POINTS:
+        raise fault(f"expected a list of pairs, {least} to {MAX_POINTS}", f"write {form}")
+
+    def read_pair(i: int, item: object) -> tuple[Quantity, T]:
+        if not isinstance(item, list | tuple) or len(item) != 2:
+            raise fault("expected a time and what belongs to it", f"write {form}", i)
+        return read_quantity(item[0], kinds.DURATION, i, 0, positive=False), read(item[1], i)
+
+    pairs = tuple(all_of(*(partial(read_pair, i, item) for i, item in enumerate(value))))
+    for i, (time, _) in enumerate(pairs):
+        before = pairs[i - 1][0]
+        rises = is_less(before, time) or (jumps and not is_less(time, before))
+        if not rises if i else time.value:
+            remedy = f"begin at 0 s, and let times rise, as in {form}"
             raise fault(f"the time {quoted(time.text)} is not in order", remedy, i, 0)
-    return points
+    return pairs
 
 
-def _read_point(i: int, item: object) -> tuple[Quantity, Quantity]:
-    if not isinstance(item, list | tuple) or len(item) != 2:
-        raise fault("a breakpoint is a time and a velocity", "write [1 s, 8 deg/s]", i)
-    time = read_quantity(item[0], kinds.DURATION, i, 0, positive=False)
-    return time, read_quantity(item[1], kinds.ANGULAR_VELOCITY, i, 1, positive=False, signed=True)
+def _read_points(value: object) -> Points:
+    def read(item: object, i: int) -> Quantity:
+        return read_quantity(item, kinds.ANGULAR_VELOCITY, i, 1, positive=False, signed=True)
+
+    return _read_timed(value, 2, "[[0 s, 0 deg/s], [1 s, 8 deg/s], ...]", read, jumps=True)
 
 
 def _read_schedule(value: object) -> tuple[tuple[Quantity, str], ...]:
-    """Read ``[[time, controller], ...]``; times rise from zero."""
-    wanted = "write [[0 s, insertion], [2 s, withdrawal], ...]"
-    if not isinstance(value, list | tuple) or not 1 <= len(value) <= MAX_POINTS:
-        raise fault("expected a list of switches", wanted)
-    steps: list[tuple[Quantity, str]] = []
-    for i, item in enumerate(value):
-        if not isinstance(item, list | tuple) or len(item) != 2:
-            raise fault("a switch is a time and a controller", wanted, i)
-        time = read_quantity(item[0], kinds.DURATION, i, 0, positive=False)
-        if not is_less(steps[-1][0], time) if steps else time.value:
-            raise fault(f"the time {quoted(time.text)} is not in order", wanted, i, 0)
-        steps.append((time, as_text(item[1], i, 1)))
-    return tuple(steps)
+    form = "[[0 s, insertion], [2 s, withdrawal], ...]"
+    return _read_timed(value, 1, form, lambda item, i: as_text(item, i, 1))
 
 
 def _read_file(value: object) -> str:

@@ -13,8 +13,8 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.text import exact_text, quoted
-from nrs_design.spec.affine import Affine
 from nrs_design.spec.controllers import ControllerSpec
+from nrs_design.spec.expression import Affine
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 from nrs_design.spec.model import Declared, SpecModel, Stronger, declared_in

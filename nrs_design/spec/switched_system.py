@@ -154,13 +154,6 @@ def _not_allowed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str
             yield at, ends
 
 
-def _doubled(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
-    before = set[ResetSpec]()
-    for at, reset, _ in _resets(spec):
-        yield at, reset in before
-        before.add(reset)
-
-
 def _misshapen(
     spec: SwitchedSystemSpec,
 ) -> Iterator[tuple[Location, tuple[int, int, int, int, str, str]]]:
@@ -202,11 +195,6 @@ def _undeclared(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str,
                     meant = did_you_mean(name, known, "parameters here are")
                     meant = meant if known else "write a number, or declare parameters"
                     yield ("modes", index, "A", i, j), (name, meant)
-
-
-def _unused(spec: SwitchedSystemSpec) -> Iterator[str]:
-    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
-    return (name for name in spec.parameters if name not in used)
 
 
 def _corners(spec: SwitchedSystemSpec) -> int:
@@ -262,7 +250,6 @@ def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[Transition, Locatio
 SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
     refuse(_renamed, "another mode is named {0!r}", "rename it"),
     refuse(_undeclared, "{0!r} is not a number, and there is no parameter of that name", "{1}"),
-    Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
     short_denominator(
         "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
     ),
@@ -316,7 +303,6 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         "the switch from {0} to {1} is not allowed",
         "add it to switching.transitions, or remove this reset",
     ),
-    refuse(_doubled, "this reset is listed twice", "list each once"),
     refuse(
         _misshapen,
         "the map is {0} x {1}, expected {2} x {3}: {4} has {2} states, {5} has {3}",

@@ -114,8 +114,6 @@ def _read_transitions(value: object) -> tuple[Transition, ...]:
         transition = (as_text(pair[0], index, 0), as_text(pair[1], index, 1))
         if transition[0] == transition[1]:
             raise fault("a switch leads to another mode", "remove it: staying is free", index)
-        if transition in found:
-            raise fault("this transition is listed twice", "list each once", index)
         found[transition] = None
     return tuple(found)
 

@@ -16,10 +16,10 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
-from nrs_design.proof.text import exact_text, quoted
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Reference, Row, each, refuse
-from nrs_design.spec.faults import Location, as_text, did_you_mean, fault
+from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ParsedBy, SpecModel, at_most, optional, required
 from nrs_design.spec.quantity import Quantity
@@ -140,15 +140,6 @@ class SwitchSeparation:
     leaving: int
     signal: str | None  # That has to move in between; None if none has
     seconds: Fraction  # At least so long, not rounded; zero if nothing keeps them apart
-
-
-def check_type(given: object) -> object:
-    """Return what is said of a mode logic if its type is known, and report that alone if not."""
-    if isinstance(given, dict) and "type" in given:
-        kind, known = as_text(given["type"], "type"), ("thresholds",)
-        if kind not in known:
-            raise fault(f"{quoted(kind)} is not known", did_you_mean(kind, known, "write"), "type")
-    return given
 
 
 class ThresholdLogicSpec(SpecModel, stronger="unknown"):

@@ -8,6 +8,7 @@ or ``counts``) is a base unit of its own each time: no gain passes for one of an
 
 from __future__ import annotations
 
+import ast
 import difflib
 import functools
 import re
@@ -17,6 +18,7 @@ from fractions import Fraction
 from nrs_design.axis import COMMAND_UNITS
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
+from nrs_design.spec.algebra import Operators, read_algebra
 
 # Of the thesis, and of a spec that names none.
 THESIS_COMMAND = "rpm"
@@ -24,7 +26,7 @@ BASE_UNITS = ("kg", "m", "s", "rad", *COMMAND_UNITS)
 MAX_UNIT_LENGTH = 60
 MAX_UNIT_EXPONENT = 9
 
-_TOKEN = re.compile(r"[A-Za-z]+|\^[+-]?[0-9]+|[*/()]|1")
+_SYMBOL = re.compile(r"[A-Za-z]+")
 _STRANGE = {
     "±": "write {nominal: ..., range: [lowest, highest]}",
     "+-": "write {nominal: ..., range: [lowest, highest]}",
@@ -142,74 +144,48 @@ def parse_unit(text: str) -> Unit:
     """
     if len(text) > MAX_UNIT_LENGTH:
         raise SpecError(f"the unit {quoted(text)} is too long", remedy="write it in base units")
-    tokens = _tokens(text)
-    unit = _product(tokens, text)
-    if tokens:
-        raise _malformed(text)
-    return unit
-
-
-def _tokens(text: str) -> list[str]:
-    """Split into symbols, reversed so that the next one is at the end."""
     for character, remedy in _STRANGE.items():
         if character in text:
             raise SpecError(f"the unit {quoted(text)} holds {character!r}", remedy=remedy)
-    tokens = _TOKEN.findall(text)
-    if "".join(tokens) != text:
-        raise _malformed(text)
-    return tokens[::-1]
+
+    def read(symbol: str) -> Unit:
+        if symbol == "1":
+            return ONE
+        if symbol.isdigit():
+            raise ValueError(f"{symbol} is no unit")
+        if symbol not in UNITS:
+            raise _unknown(symbol, text)
+        return UNITS[symbol]
+
+    try:
+        if " " in text:
+            raise ValueError("no unit has spaces")
+        return read_algebra(text, _SYMBOL, read, _OPERATORS, _to_power)
+    except ValueError:
+        remedy = "write products with *, quotients with / and powers with ^, such as N*m*s/rad"
+        raise SpecError(f"{quoted(text)} is not a unit", remedy=remedy) from None
 
 
-def _product(tokens: list[str], text: str) -> Unit:
-    unit = _power(tokens, text)
-    while tokens and tokens[-1] in "*/":
-        sign = 1 if tokens.pop() == "*" else -1
-        unit = unit.times(_power(tokens, text), sign)
-    return unit
-
-
-def _power(tokens: list[str], text: str) -> Unit:
-    unit = _atom(tokens, text)
-    if not (tokens and tokens[-1].startswith("^")):
-        return unit
-    exponent = int(tokens.pop()[1:])
-    if abs(exponent) > MAX_UNIT_EXPONENT:
-        raise SpecError(
-            f"the unit {quoted(text)} has an exponent beyond +-{MAX_UNIT_EXPONENT}",
-            remedy="check the exponent",
-        )
+def _to_power(unit: Unit, exponent: int) -> Unit:
+    """Return a power of a unit, which may be a power itself: the factor stays of a size."""
+    if abs(exponent) > MAX_UNIT_EXPONENT or not 1e-60 < unit.factor < 1e60:
+        message = f"the unit has an exponent beyond +-{MAX_UNIT_EXPONENT}"
+        raise SpecError(message, remedy="check the exponent")
     return ONE.times(unit, exponent)
 
 
-def _atom(tokens: list[str], text: str) -> Unit:
-    token = tokens.pop() if tokens else ""
-    if token == "(":
-        unit = _product(tokens, text)
-        if not tokens or tokens.pop() != ")":
-            raise _malformed(text)
-        return unit
-    if token == "1":
-        return ONE
-    if token in UNITS:
-        return UNITS[token]
-    if token.isalpha():
-        raise _unknown(token, text)
-    raise _malformed(text)
+_OPERATORS: Operators[Unit] = {
+    ast.Mult: Unit.times,
+    ast.Div: lambda a, b: a.times(b, -1),
+}
 
 
-def respelt(text: str) -> str | None:
-    """Return a unit with known symbols for those that are not; None if it has only known ones.
-
-    A symbol that resembles none stays as it is.
-    """
-    tokens = _TOKEN.findall(text)
-    unknown = [token for token in tokens if token.isalpha() and token not in UNITS]
-    if "".join(tokens) != text or not unknown:
-        return None
-    return "".join(_guess(token) or token if token in unknown else token for token in tokens)
+def has_unknown(text: str) -> bool:
+    """Tell whether a unit has symbols that are none."""
+    return not UNITS.keys() >= {*_SYMBOL.findall(text)}
 
 
-def _guess(symbol: str) -> str | None:
+def guess_unit(symbol: str) -> str | None:
     """Return what is probably meant by a symbol that is no unit."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]
     near = alike or difflib.get_close_matches(symbol, UNITS, n=1)
@@ -217,14 +193,7 @@ def _guess(symbol: str) -> str | None:
 
 
 def _unknown(symbol: str, text: str) -> SpecError:
-    guess, known = _guess(symbol), "known units are " + " ".join(UNITS)
+    guess, known = guess_unit(symbol), "known units are " + " ".join(UNITS)
     remedy = f"did you mean {guess}? {known}" if guess else known
     within = "" if symbol == text else f" in {quoted(text)}"
     return SpecError(f"unknown unit {quoted(symbol)}{within}", remedy=remedy)
-
-
-def _malformed(text: str) -> SpecError:
-    return SpecError(
-        f"{quoted(text)} is not a unit",
-        remedy="write products with *, quotients with / and powers with ^, such as N*m*s/rad",
-    )

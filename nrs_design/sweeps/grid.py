@@ -18,10 +18,9 @@ from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec import parse_exact
 from nrs_design.spec.document import Mapping, Node, parse_document, read_source
 from nrs_design.spec.document import Sequence as Items
-from nrs_design.spec.edits import Keys
+from nrs_design.spec.edits import Edit, Keys, node_at, saying_instead
 from nrs_design.spec.exact import is_number
 from nrs_design.spec.faults import did_you_mean
-from nrs_design.spec.instead import Change
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 
@@ -60,7 +59,7 @@ class Grid:
         """The values of each point, one for each field."""
         return list(product(*(field.values for field in self.fields)))
 
-    def changes(self, point: tuple[str, ...]) -> tuple[Change, ...]:
+    def changes(self, point: tuple[str, ...]) -> tuple[Edit, ...]:
         """Return what the spec of a point says in the place of what its file says."""
         return tuple((field.at, text) for field, text in zip(self.fields, point, strict=True))
 

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.text import CNames
-from nrs_design.spec.monitoring import MonitoringSpec
+from nrs_design.spec.sensor import MonitoringSpec
 from tests.exporters.programs import LAWS, run, source_file, write_formats
 
 pytestmark = pytest.mark.slow

@@ -7,8 +7,6 @@ take the way of `gate`; `report` and `export` with a certificate, that of `run_r
 import json
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.goals import certified_goals
@@ -20,7 +18,6 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
-from tests.support import ROOT
 from tests.tables import spec_text
 
 from .conftest import gate_of
@@ -126,31 +123,3 @@ def test_ages_beyond_the_declared_ones_are_checked(tmp_path):
         forged = {key: value for key, value in document.items() if key != "ages"}
         forged |= {} if ages is None else {"ages": ages}
         assert said in verify_document(forged | {"id": content_id(forged)}, loaded).fault
-
-
-def test_all_commands_agree_on_the_example(tmp_path):
-    path = ROOT / "docs" / "examples" / "gains-with-proof.nrs.yaml"
-    assert agreed(path, tmp_path) == {"decay_rate": True, "delay": True}
-
-
-@settings(max_examples=max(6, settings.default.max_examples // 2))
-@given(
-    low=st.integers(200, 900),
-    rate=st.sampled_from(["0.5", "2", "5", "9"]),
-    delay=st.sampled_from(["", ", delay: 2 ms", ", delay: 4 ms"]),
-    contact=st.sampled_from(["losable", "kept"]),
-    digits=st.integers(3, 6),
-    least=st.sampled_from(["0", "0.01"]),
-)
-def test_all_commands_agree_on_any_design(
-    tmp_path_factory, low, rate, delay, contact, digits, least
-):
-    folder = tmp_path_factory.mktemp("drawn")
-    changes = ALONE | {
-        "STIFFNESS": f"{{nominal: {low + 20} N/m, range: [{low} N/m, {low + 50} N/m]}}",
-        "MASSES": CASE["MASSES"].replace("0.01", least),
-        "DIGITS": str(digits),
-        "CONTACT": contact,
-        "GOALS": f"decay_rate: {rate} 1/s{delay}",
-    }
-    agreed(written(folder, **changes), folder)

@@ -4,11 +4,11 @@ import pytest
 
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import read_lock_if_any
-from nrs_design.gating.renew import certificates_of, recorded_in, write_lock
+from nrs_design.gating.renew import recorded_in, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.pipeline.certification import Overrides
 
-from .conftest import HARD, STABLE, UNSTABLE, restated
+from .conftest import HARD, UNSTABLE, restated
 
 
 @pytest.fixture
@@ -28,12 +28,7 @@ def gate(project, monkeypatch):
         searched.clear()
         lock = project / "nrs.lock"
         known = read_lock_if_any(lock)
-        files = Files(
-            folder=project / folder,
-            html=False,
-            locked=certificates_of(known, lock),
-            recorded=recorded_in(known, lock),
-        )
+        files = Files(folder=project / folder, html=False, locked=recorded_in(known, lock))
         specs = find_specs([project / f"specs/{name}.nrs.yaml"])
         outcome = run_gate(specs, files, overrides=Overrides(**overrides))
         write_lock(outcome, lock)
@@ -56,15 +51,6 @@ def test_what_still_holds_is_not_searched_for_and_nothing_changes(project, gate,
     before = contents(project)
     assert not gate(name)
     assert contents(project) == before
-
-
-def test_gains_that_are_refuted_say_nothing_of_those_that_a_search_chooses(
-    project, gate, monkeypatch
-):
-    monkeypatch.setattr("nrs_design.controllers.gains.steering_goals", lambda spec: ("decay_rate",))
-    (project / "specs/unstable.nrs.yaml").write_text(UNSTABLE)
-    assert gate("unstable")
-    assert gate("unstable")
 
 
 def test_a_certificate_counts_without_a_lock_and_in_another_folder(project, gate):
@@ -105,22 +91,6 @@ def test_what_does_not_hold_or_is_not_the_locked_one_is_searched_for(project, ga
     restated(project / "reports/stable.cert.json", change)
     assert gate()
     assert (project / "reports/stable.cert.json").read_text() == text
-
-
-def test_a_spec_that_has_changed_is_searched_for(project, gate):
-    spec = project / "specs/stable.nrs.yaml"
-    spec.write_text(STABLE.replace("[-2, 3]", "[-2, 2]"))
-    assert gate()
-    assert not gate()
-    spec.write_text(f"# Nothing else is said.\n{spec.read_text()}")
-    assert not gate()
-
-
-def test_other_gains_than_are_recorded_are_searched_for(project, gate, monkeypatch):
-    from nrs_design.pipeline import runs
-
-    monkeypatch.setattr(runs, "is_of_gains", lambda *given: False)
-    assert gate("soft-tissue")
 
 
 def test_a_goal_that_the_certificate_does_not_show_is_searched_for(project, gate):

@@ -9,19 +9,6 @@ from nrs_design.gating.rules import RETIRED
 from tests.tables import table
 
 
-@pytest.mark.slow
-def test_lock_names_specs_and_certificates_relative_to_itself(project):
-    lock = read_lock(project / "nrs.lock")
-    assert [spec.path for spec in lock.specs] == [
-        "specs/soft-tissue.nrs.yaml",
-        "specs/stable.nrs.yaml",
-    ]
-    for spec in lock.specs:
-        certificate = json.loads((project / spec.certificate.file).read_text())
-        assert certificate["id"] == spec.certificate.id
-        assert certificate["spec"]["sha256"] == spec.sha256
-
-
 def test_lock_reads_back(project):
     lock = read_lock(project / "nrs.lock")
     assert Lock.model_validate(json.loads(dump_lock(lock))) == lock
@@ -41,11 +28,6 @@ OLDER = document(schema="nrs-design/lock/1").encode()
 MANY = document(*[{}] * (MAX_SPECS + 1)).encode()
 
 
-def test_the_sample_itself_is_a_lock(tmp_path):
-    (tmp_path / "nrs.lock").write_text(document(ENTRY))
-    assert read_lock(tmp_path / "nrs.lock").specs[0].path == "a.nrs.yaml"
-
-
 @pytest.mark.parametrize("status", ["met", "missed"])
 def test_goals_of_retired_rules_are_skipped(tmp_path, status):
     """An older release locked them; a gate of today renews the entry without them."""
@@ -55,13 +37,6 @@ def test_goals_of_retired_rules_are_skipped(tmp_path, status):
     lock = read_lock(tmp_path / "nrs.lock")
     assert [goal.rule for goal in lock.specs[0].goals] == ["NRS103"]
     assert retired not in dump_lock(lock)
-
-
-@pytest.mark.parametrize("certificate", [None, ENTRY["certificate"]])
-def test_an_inconclusive_spec_may_have_the_certificate_of_a_remark(tmp_path, certificate):
-    entry = {**ENTRY, "verdict": "inconclusive", "rate": None, "certificate": certificate}
-    (tmp_path / "nrs.lock").write_text(document(entry))
-    assert read_lock(tmp_path / "nrs.lock").specs[0].verdict == "inconclusive"
 
 
 def spoiled(case):
@@ -92,9 +67,9 @@ def test_what_is_not_a_lock_is_refused(tmp_path, text):
     ("content", "said"),
     [
         pytest.param(b"\xff\xfe", "not a lock file", id="no text"),
-        pytest.param(OLDER, "another version.*remove it", id="another version"),
-        pytest.param(MANY, "no lock file holds more than 10000", id="too many specs"),
-        pytest.param(b" " * (MAX_BYTES + 1), "larger than any lock file", id="too large"),
+        pytest.param(OLDER, "schema: Input should be 'nrs-design/lock/2'", id="another version"),
+        pytest.param(MANY, "specs: List should have at most 10000 items", id="too many specs"),
+        pytest.param(b" " * (MAX_BYTES + 1), "larger than 32 MiB", id="too large"),
     ],
 )
 def test_what_no_lock_holds_is_refused_before_it_is_looked_at(tmp_path, content, said):

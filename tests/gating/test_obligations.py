@@ -1,8 +1,12 @@
 """What is worst, and what lets the gate pass."""
 
+import os
 from pathlib import Path
+from urllib.parse import unquote
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError, SpecError
 from nrs_design.gating.obligations import (
@@ -10,8 +14,10 @@ from nrs_design.gating.obligations import (
     Obligation,
     SpecOutcome,
     Status,
-    count_by_verdict,
     failed,
+    from_here,
+    is_utf8,
+    relative_uri,
 )
 from nrs_design.gating.rules import INTERNAL, MODE_STABLE, SPEC
 
@@ -76,15 +82,23 @@ def test_an_error_in_another_file_has_no_line_in_this_one(path, line, words):
     assert (found.line, found.message, found.status) == (line, words, Status.ERROR)
 
 
-def test_specs_are_counted_by_verdict_or_by_why_there_is_none():
-    specs = [
-        SpecOutcome(PATH, (), verdict="proved"),
-        SpecOutcome(PATH, (), verdict="proved"),
-        SpecOutcome(PATH, ()),
-        SpecOutcome(PATH, (), certifiable=False),
-    ]
-    assert count_by_verdict(specs) == {
-        "proved": 2,
-        "without verdict": 1,
-        "with nothing to certify": 1,
-    }
+NAMES = st.text(st.characters(exclude_characters="/\0", codec="utf-8"), min_size=1).filter(
+    lambda name: name not in (".", "..")
+)
+
+
+@given(NAMES)
+def test_uri_reads_back_as_the_name(name):
+    uri = relative_uri(Path("specs", name))
+    assert unquote(uri) == f"specs/{name}"
+    assert set(uri).isdisjoint(' "<>?#\n')
+    assert uri.isascii()
+
+
+@pytest.mark.parametrize("raw", [b"a\xff.nrs.yaml"])
+def test_a_name_that_is_not_utf8_can_be_told_and_shown(raw):
+    path = Path(os.fsdecode(raw))
+    assert not is_utf8(path)
+    assert is_utf8(Path("ä.nrs.yaml"))
+    assert from_here(path).encode() == b"a\\xff.nrs.yaml"
+    assert relative_uri(path) == "a%FF.nrs.yaml"

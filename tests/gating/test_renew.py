@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from nrs_design.errors import CertificateError, OutputError
+from nrs_design.errors import OutputError
 from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.obligations import Caution
-from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
+from nrs_design.gating.renew import check_folder, make_lock, recorded_in, write_lock
 from nrs_design.output import alone_in
 
 from .conftest import gate_of
@@ -22,52 +22,12 @@ def outcome_of(project, *names, reports="reports"):
     return gate_of(project, *specs, reports=reports)
 
 
-def test_lock_elsewhere_names_the_same_files(project):
-    outcome = outcome_of(project, "specs")
-    lock = make_lock(outcome.specs, project / "reports/nrs.lock")
-    assert lock.specs[0].path == "../specs/soft-tissue.nrs.yaml"
-    assert lock.specs[0].certificate.file == "soft-tissue.cert.json"
-
-
 def test_a_remark_on_a_value_without_bound_reads_back(project):
     file, (spec,) = project / "nrs.lock", outcome_of(project, STABLE_SPEC).specs
     far = Caution(spec.path, "Ms unbounded", 1, 1, beyond=math.inf, at=("controllers", "a"))
     file.write_text(dump_lock(make_lock([replace(spec, cautions=(far,))], file)))
     remark = read_lock(file).specs[0].remark
     assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
-
-
-def test_missed_goals_and_gains_are_locked(project):
-    entry = read_lock(project / "nrs.lock").specs[0]
-    assert entry.gains["insertion"]["Bt"] == "2.150000095367431640625"
-    assert [(goal.rule, goal.subject, goal.status) for goal in entry.goals] == [
-        ("NRS103", "insertion", "met"),
-        ("NRS103", "withdrawal", "met"),
-    ]
-
-
-def test_unwritable_lock(project):
-    outcome = outcome_of(project, STABLE_SPEC, reports="ci")
-    with pytest.raises(OutputError, match="below the folder of the lock"):
-        write_lock(outcome, project / "reports/nrs.lock")
-    with pytest.raises(CertificateError, match="not a regular file"):
-        write_lock(outcome, project)
-
-
-def test_what_another_run_has_replaced_is_not_locked(project):
-    """Two runs in one tree: the certificate on the disk must be the one that is locked."""
-    outcome = outcome_of(project, STABLE_SPEC)
-    lock, file = project / "nrs.lock", project / "reports/stable.cert.json"
-    before, ours = lock.read_bytes(), file.read_text()
-    file.write_text(ours.replace(outcome.specs[0].certificate_id, 64 * "0"))
-    for _ in range(2):
-        with pytest.raises(OutputError, match=r"nothing is locked: another run works in this tree"):
-            write_lock(outcome, lock)
-        assert lock.read_bytes() == before
-        file.unlink(missing_ok=True)
-    file.write_text(ours)
-    write_lock(outcome, lock)
-    assert lock.read_bytes() == before
 
 
 def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
@@ -99,9 +59,8 @@ def test_certificates_that_a_lock_could_not_name(project, folder, lock):
 
 
 def test_whose_a_locked_certificate_is(project):
-    found = certificates_of(read_lock(project / "nrs.lock"), project / "nrs.lock")
-    name = project / "reports/stable.cert.json"
-    assert found[name.resolve()] == (project / "specs/stable.nrs.yaml").resolve()
+    found = recorded_in(read_lock(project / "nrs.lock"), project / "nrs.lock")
+    assert found[project / "specs/stable.nrs.yaml"].file == project / "reports/stable.cert.json"
 
 
 def test_the_lock_does_not_change_with_comments_and_line_ends(project):

@@ -3,8 +3,6 @@ import re
 import pytest
 
 from nrs_design import errors
-from nrs_design.cli import exit_codes
-from nrs_design.cli.exit_codes import OF_SEVERITY
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RETIRED, RULES, WORDS
 from tests.support import ROOT, run
@@ -46,13 +44,6 @@ def test_every_status_is_explained_with_its_exit_code():
     assert "Exit code 3." in WORDS["inconclusive"].remedy
 
 
-@pytest.mark.parametrize(
-    ("name", "words"), [("NRS103", "not a proof"), ("NRS106", "computed in floating point")]
-)
-def test_a_design_goal_is_not_called_a_proof(name, words):
-    assert words in RULES[name].explanation
-
-
 def test_options_that_are_advised_exist():
     advised = {
         option
@@ -62,14 +53,3 @@ def test_options_that_are_advised_exist():
     commands = (["certify-switching"], ["simulate"], ["gate"], ["identify", "tissue"])
     help_ = "".join(run(*command, "--help", cwd=ROOT).stdout for command in commands)
     assert advised - {"--help"} <= set(re.findall("--[a-z-]+", help_))
-
-
-def test_exit_codes_get_worse_with_severity():
-    """Internal before usage before refuted before inconclusive before proved."""
-    assert OF_SEVERITY == (
-        exit_codes.PROVED,
-        exit_codes.INCONCLUSIVE,
-        exit_codes.REFUTED,
-        exit_codes.USAGE,
-        exit_codes.INTERNAL,
-    )

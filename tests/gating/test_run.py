@@ -1,9 +1,14 @@
+from dataclasses import replace
+
 import pytest
 
+from nrs_design import reporting
+from nrs_design.certificates.prove import read_document
 from nrs_design.errors import InternalError
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.run import Files, run_gate
 from tests.pipeline.test_blocked import PAIR
+from tests.support import write_spec
 
 from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE, gate_of
 
@@ -90,15 +95,6 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
     assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)
 
 
-def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
-    spec = tmp_path / "s.nrs.yaml"
-    spec.write_text(STABLE)
-    outcome = gate_of(spec, spec)
-    assert outcome.broken[0].rule.id == "NRS005"
-    assert outcome.broken[0].line is None
-    assert outcome.severity == 3
-
-
 def test_what_is_doubtful_breaks_nothing(examine):
     hand = "environments:\n  hand: {model: elastic, stiffness: 60 N*m/rad}\n"
     text = SOFT_TISSUE.read_text().replace("environments:\n", hand)
@@ -119,3 +115,50 @@ def test_lines_that_block_a_proof_are_said_and_the_gate_fails(examine):
     assert stable.status is Status.INCONCLUSIVE
     assert "; proved with any one of these changes; " in stable.message
     assert "s0.nrs.yaml:7: switching.dwell_time: with 2.91 s" in stable.message
+
+
+MATRICES = [[[-1, 0], [0, -2]], [[-2, 0], [0, -1]]]
+
+
+@pytest.fixture
+def drawn(tmp_path, monkeypatch):
+    """Run the gate on one spec; tell whether its page was drawn, and return it."""
+    spec = tmp_path / "mine.nrs.yaml"
+    write_spec(spec, *MATRICES)
+    render, calls = reporting.render_html, []
+    monkeypatch.setattr(reporting, "render_html", lambda *a: calls.append(a) or render(*a))
+
+    def gate():
+        calls.clear()
+        outcome = run_gate([spec], Files(folder=tmp_path / "reports"))
+        assert not outcome.broken
+        return bool(calls), (tmp_path / "reports/given.html").read_bytes()
+
+    return gate
+
+
+@pytest.fixture
+def page(drawn):
+    is_drawn, content = drawn()
+    assert is_drawn
+    assert drawn() == (False, content)
+    return content
+
+
+def test_a_page_of_another_certificate_is_drawn_again(tmp_path, drawn, page):
+    certificate = read_document(tmp_path / "reports/given.cert.json")["id"].encode()
+    (tmp_path / "reports/given.html").write_bytes(page.replace(certificate, b"0" * 64))
+    assert drawn()[0]
+    write_spec(tmp_path / "mine.nrs.yaml", *MATRICES[:1])
+    assert drawn()[0]
+    assert not drawn()[0]
+
+
+def test_what_is_recorded_and_fulfilled_has_no_page_unless_all_are_asked_for(tmp_path, drawn, page):
+    place = tmp_path / "reports/given.html"
+    place.unlink()
+    files = Files(folder=tmp_path / "reports")
+    assert not run_gate([tmp_path / "mine.nrs.yaml"], files).broken
+    assert not place.exists()
+    run_gate([tmp_path / "mine.nrs.yaml"], replace(files, every_page=True))
+    assert place.exists()

@@ -67,12 +67,6 @@ SPECS: dict[str, Callable[[], str | bytes]] = {
     "folder name": lambda: modes([[-1]]).replace("hostile", '"../outside/x"'),
 }  # fmt: skip
 
-# Where time and memory go into the search for a proof.
-LARGE_SPECS: dict[str, Callable[[], str]] = {
-    "order 64": lambda: modes(dense(64, 3, stable=True), dense(64, 4, stable=True)),
-    "order 40, 200 modes": lambda: modes(*[dense(40, 1, stable=True)] * 150),
-}
-
 LINEAR = "time_s,deflection_m,force_N\n"
 RECORDS: dict[str, Callable[[], str | bytes]] = {
     "value of a mebibyte": lambda: LINEAR + "0,0," + "9" * MIB + "\n",

@@ -5,16 +5,7 @@ import os
 import pytest
 
 from nrs_design.gating.lock import Lock, dump_lock
-from tests.hostile.corpus import (
-    CERTIFICATES,
-    LARGE_SPECS,
-    LOCKS,
-    NAMES,
-    PROPOSALS,
-    RECORDS,
-    SPECS,
-    write,
-)
+from tests.hostile.corpus import CERTIFICATES, LOCKS, NAMES, PROPOSALS, RECORDS, SPECS, write
 from tests.hostile.running import check
 from tests.support import COMMUTING
 
@@ -78,14 +69,6 @@ def test_a_spec_is_checked(place, case):
 def test_a_spec_in_every_command(place, case, command):
     write(place / "work/spec.nrs.yaml", SPECS[case]())
     write(place / "work/nrs.lock", dump_lock(Lock(specs=[])))
-    check(place, *command, "spec.nrs.yaml")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("command", SPEC_COMMANDS[1:3], ids=" ".join)
-@pytest.mark.parametrize("case", LARGE_SPECS)
-def test_a_large_spec_ends_within_the_budget(place, case, command):
-    write(place / "work/spec.nrs.yaml", LARGE_SPECS[case]())
     check(place, *command, "spec.nrs.yaml")
 
 

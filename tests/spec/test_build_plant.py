@@ -58,9 +58,3 @@ def test_every_environment_of_a_spec_has_its_law():
         keys = [k for k, f in spec.model_fields.items() if f.annotation is RangedQuantity]
         assert tuple(keys) == law.keys
         assert spec.law is law
-
-
-def test_ranges_as_declared_are_not_made_anew():
-    plant = build_plant(load_spec(SOFT_TISSUE))
-    assert plant.scaled(Fraction(1), ("soft",)) is plant
-    assert plant.scaled(Fraction(1, 2), ("soft",)) is not plant

@@ -27,7 +27,6 @@ CREEPING = {
     "series_stiffness": "25 N*m/rad",
     "damping": "3 N*m*s/rad",
 }
-SAMPLING = {"period": "2 ms", "delay": 0}
 # What a spec must say to have a feature, merged into the plainest one, in this order.
 FEATURES = table(Path(__file__).with_name("features.yaml"))
 BASE = FEATURES["BASE"]
@@ -68,12 +67,6 @@ def test_every_feature_has_its_change():
     assert named == set(CHANGES) == used
 
 
-def test_the_plainest_spec_has_no_feature_that_needs_a_change():
-    plain = parse_spec(spec_with())
-    found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.RELAXED, f.UNFILTERED}
-
-
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)
 def test_what_is_not_modelled_together_is_refused(row):
     """With the words of the row, at a line of the file, and with something to do."""
@@ -86,32 +79,6 @@ def test_what_is_not_modelled_together_is_refused(row):
         assert fault.line > 1
         assert fault.remedy
         assert "{" not in fault.message
-
-
-def faults_of(tree):
-    try:
-        parse_spec(json.dumps(tree))
-    except SpecError as error:
-        return {fault.message: fault.remedy for fault in error.faults}
-    return {}
-
-
-def test_no_advice_on_samples_leads_to_the_next_refusal():
-    ways = {"leave sampling out": None, "add `sampling: {period: 2 ms, delay: 0}`": SAMPLING}
-    tried = 0
-    for row in COMBINATIONS:
-        for drive in (f.STREAMED, f.TORQUES, f.LOADED):
-            said = json.loads(spec_with(*row.features, drive))
-            before = faults_of(said)
-            for way in {way for text in before.values() for way in ways if way in text}:
-                tried += 1
-                assert faults_of(merged(said, {"sampling": ways[way]})).keys() < before.keys(), way
-    assert tried > 20
-
-
-def test_a_limit_of_torques_says_nothing_of_the_speed_of_a_motor():
-    said = merged(json.loads(spec_with(f.TORQUES)), {"limits": {"command": "3 N*m"}})
-    assert not list(doubt_spec(parse_spec(json.dumps(said | {"sampling": SAMPLING}))))
 
 
 @pytest.mark.parametrize("features", CHANGING, ids=lambda items: items[0].phrase)

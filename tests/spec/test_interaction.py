@@ -1,14 +1,4 @@
-import pytest
-from pydantic import ValidationError
-
-from .samples import (
-    FORCE,
-    IMPEDANCE,
-    interaction,
-    place_of,
-    refusal,
-    spoiled,
-)
+from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
 
 
 def test_environments_may_be_missing_without_contact() -> None:
@@ -17,12 +7,6 @@ def test_environments_may_be_missing_without_contact() -> None:
     assert interaction(head + tail).environments == {}
     error = refusal(head + "controllers:" + rest.partition("controllers:")[2])
     assert "there is no environment 'soft'" in error.message
-
-
-def test_is_frozen() -> None:
-    spec = interaction(IMPEDANCE)
-    with pytest.raises(ValidationError, match="frozen"):
-        spec.__setattr__("name", "other")
 
 
 def test_reports_the_first_fault_and_counts_the_others() -> None:
@@ -39,13 +23,6 @@ def test_reports_the_first_fault_and_counts_the_others() -> None:
     assert str(error).endswith("; 2 more faults in this file")
     one = refusal(spoiled(spoiled(IMPEDANCE, "0.0351 s", "0.0351 m"), "8 deg/s", "8 m"))
     assert str(one).endswith("; 1 more fault in this file")
-
-
-def test_names_may_equal_keys() -> None:
-    text = IMPEDANCE.replace("insertion:", "environment:").replace("soft", "model")
-    assert set(interaction(text).controllers) == {"environment"}
-    error = refusal(spoiled(text, "    Mt: 0.01 kg*m^2\n", "    Mm: 0.01 kg*m^2\n"))
-    assert "`controllers.environment.Mt` is missing" in error.message
 
 
 def test_entries_are_limited() -> None:

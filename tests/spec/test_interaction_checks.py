@@ -6,15 +6,6 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
 from tests.support import ROOT
 
-SATURATING = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
-
-
-def test_an_environment_that_is_not_there_is_a_fault_of_its_own():
-    with pytest.raises(SpecError, match="there is no environment 'soft'") as caught:
-        parse_spec(SATURATING.replace("  soft:\n", "  other:\n"))
-    assert "which has damping" not in str(caught.value)
-
-
 STREAMED = (ROOT / "docs/examples/ur-like.nrs.yaml").read_text("utf-8")
 
 

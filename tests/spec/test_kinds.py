@@ -5,7 +5,6 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import kinds
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
-from nrs_design.spec.units import parse_unit
 
 NAMED = {name: kind for name, kind in vars(kinds).items() if isinstance(kind, QuantityKind)}
 
@@ -17,11 +16,6 @@ def test_examples_are_of_their_kind(kind):
         with pytest.raises(SpecError) as caught:
             parse_quantity(f"3 {confusion}", kind)
         assert caught.value.remedy == advice.format(value="3")
-
-
-@pytest.mark.parametrize("kind", NAMED.values(), ids=NAMED)
-def test_no_confusion_is_with_a_unit_that_is_right(kind):
-    assert not any(kind.accepts(parse_unit(unit).dimension) for unit in kind.confusions)
 
 
 def test_what_enters_a_proof_has_no_factor_of_pi():

@@ -1,7 +1,6 @@
 """Rules for missed deadlines: their words, counted and compared with every window."""
 
 from itertools import product
-from math import comb
 
 import pytest
 
@@ -26,37 +25,3 @@ def test_words_are_those_that_every_window_allows(at_most, of):
             windows = (word[i : i + of] for i in range(max(1, length - of + 1)))
             allowed = all(sum(window) <= at_most for window in windows)
             assert (follow(automaton, word) is not None) is allowed
-
-
-@pytest.mark.parametrize(
-    ("at_most", "of"), [(1, 2), (1, 7), (2, 5), (2, 10), (3, 4), (3, 7), (5, 6)]
-)
-def test_there_are_as_few_states_as_can_be(at_most, of):
-    """No two states allow the same words, and each is reached; their number is a binomial."""
-    automaton = automaton_of(at_most, of)
-    assert automaton.count == comb(of, at_most)
-    words = [word for n in range(of) for word in product((0, 1), repeat=n)]
-
-    def future(state):
-        found = []
-        for word in words:
-            at = state
-            for missed in word:
-                at = None if at is None else (automaton.miss if missed else automaton.hit)[at]
-            found.append(at is not None)
-        return tuple(found)
-
-    assert len({future(state) for state in range(automaton.count)}) == automaton.count
-    reached = {follow(automaton, word) for word in words} - {None}
-    assert reached == set(range(automaton.count))
-
-
-def test_a_long_window_has_no_more_states_on_the_way():
-    """Of 1000 steps all but one may be missed: 1000 states, not as many as sets of misses."""
-    automaton = automaton_of(999, 1000)
-    assert automaton.count == 1000
-    state = 0
-    for _ in range(999):
-        state = automaton.miss[state]
-    assert automaton.miss[state] is None
-    assert automaton.hit[state] == 0

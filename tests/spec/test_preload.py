@@ -4,14 +4,14 @@ import math
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.interval import Interval
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
-from nrs_design.spec.preload import ExponentSpec, power_box
+from nrs_design.spec.preload import DIGITS, ExponentSpec, power_between, power_box
 
 from .samples import IMPEDANCE, interaction, spoiled
 
@@ -34,23 +34,6 @@ def test_box_of_an_exact_power():
     # Chord 6/1.5 (1/4)^0.5 = 2, tangent 6 4^0.5 = 12; damping (1/4)^1.5 and 4^1.5.
     assert k == Interval(F(6), F(2), F(12))
     assert b == Interval(F(1), F(1, 8), F(8))
-
-
-def test_tangent_of_the_models():
-    """The nominal values are the tangent of the law at `about`; the box holds it everywhere."""
-    law = HuntCrossley(1.054, 15.158, 1.2)  # thesis table 2.5
-    k, b = law.tangent(0.2)
-    exponent = ExponentSpec(nominal=F("1.2"))
-    box = power_box(
-        Interval.point(F(k)), Interval.point(F(b)), exponent, (F("0.1") / F("0.2"), F("1.5"))
-    )
-    for deflection in (0.1, 0.15, 0.2, 0.3):
-        stiffness, damping = law.tangent(deflection)
-        assert box[0].low <= stiffness <= box[0].high * (1 + 1e-12)
-        assert box[1].low * (1 - 1e-12) <= damping <= box[1].high * (1 + 1e-12)
-    assert float(box[0].high) == pytest.approx(law.tangent(0.3)[0])
-    # Not the tangent at the low end, but the chord from the surface to it.
-    assert float(box[0].low) == pytest.approx(law.tangent(0.1)[0] / 1.2)
 
 
 shares = st.floats(0, 1)
@@ -104,8 +87,34 @@ def test_spec():
     assert float(environment.parameters["b"].high / arm) == pytest.approx(10 * 2**1.3)
 
 
-def test_degrees_cancel():
-    angles = LAW.replace("N/m", "N*m/rad").replace("10 N*s/m", "0.5 N*m*s/rad").replace("mm", "deg")
-    spec = interaction(spoiled(IMPEDANCE, LINEAR + "    lever_arm: 0.24 m\n", angles))
-    stiffness = build_plant(spec).environment("soft").stiffness
-    assert float(stiffness.high) == pytest.approx(800 * 2**0.3)
+F = Fraction
+bases = st.fractions("1/1000", 1000, max_denominator=1000)
+exponents = st.fractions(-3, 3, max_denominator=1000)
+
+
+@pytest.mark.parametrize(
+    ("base", "exponent", "power"),
+    [
+        (F(4), F(1, 2), F(2)),
+        (F(8, 27), F(-2, 3), F(9, 4)),
+        (F(7), F(0), F(1)),
+        (F(1), F("0.2"), F(1)),
+    ],
+)
+def test_powers_that_end_are_exact(base, exponent, power):
+    assert power_between(base, exponent) == (power, power)
+
+
+@settings(max_examples=50)
+@given(bases, exponents)
+def test_surely_between_and_near(base, exponent):
+    low, high = power_between(base, exponent)
+    q, power = exponent.denominator, base**exponent.numerator
+    assert low**q <= power <= high**q
+    assert low <= high <= low * (1 + F(1, 10 ** (DIGITS - 1)))
+
+
+@pytest.mark.parametrize("base", [F(0), F(-2)])
+def test_no_other_base(base):
+    with pytest.raises(ValueError, match="no power"):
+        power_between(base, F(1, 2))

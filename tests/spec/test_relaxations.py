@@ -59,18 +59,6 @@ def test_less_is_asked_for_at_every_step_and_all_at_the_last():
         assert to_data(changed(spec.root, line.at, way.value_at(way.size))) == said
 
 
-def test_the_lengths_of_a_hand_are_decimals_of_its_unit():
-    line = lines_of(loaded(TEXT))[STIFFNESS]
-    up, down = line.alternatives
-    assert (line.weakest.value_at(0), up.value_at(0)) == (
-        ("747.1461 N/m", "747.1461 N/m"),
-        ("720.56 N/m", "747.1461 N/m"),
-    )
-    # Half of the way to 768.17, rounded towards the nominal value.
-    assert up.value_at(PARTS // 2) == ("720.56 N/m", "757.65 N/m")
-    assert down.value_at(PARTS // 2) == ("733.86 N/m", "768.17 N/m")
-
-
 @given(
     st.fractions(-1000, 1000, max_denominator=10**6),
     st.fractions(Fraction(1, 10**6), 1000, max_denominator=10**6),
@@ -92,14 +80,6 @@ def test_ends_are_rounded_towards_the_nominal_value_and_never_leave_the_range(ce
         assert step == 0 or (high - center) > above * (step - Fraction(1, 2)) / PARTS
         assert (Fraction(up.value_at(step)[1]), Fraction(down.value_at(step)[0])) == (high, low)
         last = low, high
-
-
-def test_a_constant_delay_may_be_shorter():
-    line = lines_of(loaded(TEXT + "\nsampling: {period: 2 ms, delay: 2}\n"))["sampling.delay"]
-    assert [line.weakest.value_at(step) for step in range(3)] == ["0", "1", "2"]
-    assert line.weakest.label_at(1) == "1 sample"
-    # Another delay is another loop.
-    assert line.changes_model
 
 
 def test_a_range_of_times_keeps_its_shortest():
@@ -124,25 +104,6 @@ def test_a_dwell_time_begins_where_every_mode_has_decayed():
     assert times[-1] < Fraction(1, 100)
     assert line.weakest.value_at(line.weakest.size) == "arbitrary"
     assert "switching" not in lines_of(loaded(text))
-
-
-def test_a_longer_dwell_time_than_the_one_declared():
-    text = (ROOT / "specs/examples/geromel-colaneri.nrs.yaml").read_text(encoding="utf-8")
-    line = lines_of(loaded(text))["switching.dwell_time"]
-    assert line.weakest.value_at(line.weakest.size) == "2.76 s"
-    assert Fraction("2.76") < Fraction(line.weakest.value_at(line.weakest.size - 1)[:-2]) < 3
-
-
-def test_identified_ranges_lose_what_was_said_of_them():
-    """A range that was cut by hand does not hold what identification found."""
-    covers = "    lever_arm: 0.24 m\n    range_covers: tolerance\n"
-    text = TEXT.replace("    lever_arm: 0.24 m\n", covers)
-    values = parse_spec(text).environments["soft"].values_id()
-    text = text.replace(covers, f"{covers}    range_id: {values}\n")
-    spec = loaded(text)
-    assert spec.spec.environments["soft"].range_id == values
-    soft = at_least(spec, lines_of(spec)[STIFFNESS]).spec.environments["soft"]
-    assert (soft.fixed, soft.range_id, soft.range_covers) == (True, None, None)
 
 
 def test_given_gains_of_all_controllers_change_together():

@@ -23,9 +23,3 @@ def test_tensor_instead_of_rod() -> None:
     assert crank.inertia[1, 1] == pytest.approx(0.0733 * 0.135**2 / 12)
     assert crank.inertia[0, 1] == crank.inertia[1, 0] == pytest.approx(-3e-9)
     assert crank.inertia[0, 2] == pytest.approx(0, abs=1e-18)
-
-
-def test_balance_and_control_may_be_left_out() -> None:
-    text = TEXT[: TEXT.index("# Thesis 4.2 and 4.3")]
-    spec = parse_spec(text)
-    assert (spec.control, spec.balance) == (None, None)

@@ -101,9 +101,3 @@ def test_every_key_is_described() -> None:
         "varies",
     } <= described.keys()
     assert [n for n, inner in properties(definitions) if not inner.get("description")] == []
-
-
-def test_quantities_name_their_unit() -> None:
-    for name, inner in properties(json_schema()["definitions"]):
-        if "N*m" in json.dumps(inner.get("examples", "")):
-            assert "N*m" in inner["description"] or name in ("min", "max", "nominal")

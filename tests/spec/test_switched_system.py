@@ -1,8 +1,6 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from .samples import SWITCHED, numbers, refusal, spoiled, switched
 
@@ -20,12 +18,6 @@ def test_decimals_are_not_rounded() -> None:
     text = spoiled(SWITCHED, "[[-1, -1], [1, -1]]", "[[-0.36, -0.48], [-0.48, -0.64]]")
     (a, b), (c, d) = numbers(switched(text).modes[0])
     assert a * d - b * c == 0
-
-
-@pytest.mark.parametrize("modes", ["[]", "{}", "a"])
-def test_refuses_an_empty_or_absent_list_of_modes(modes: str) -> None:
-    head = SWITCHED.partition("modes:")[0]
-    assert "modes:" in refusal(f"{head}modes: {modes}\nswitching: arbitrary\n").message
 
 
 def _modes(count: int, n: int) -> str:
@@ -47,34 +39,3 @@ def test_number_of_modes_is_limited() -> None:
     tail = "switching: arbitrary\n"
     assert len(switched(head + _modes(20_000, 1) + tail).modes) == 20_000
     assert "modes: more than 20000 entries" in refusal(head + _modes(20_001, 1) + tail).message
-
-
-@given(
-    st.integers(1, 4).flatmap(
-        lambda n: st.lists(
-            st.lists(st.fractions(max_denominator=1000), min_size=n, max_size=n),
-            min_size=n,
-            max_size=n,
-        )
-    )
-)
-def test_matrices_survive_the_round_trip(rows: list[list[Fraction]]) -> None:
-    matrix = "[" + ", ".join("[" + ", ".join(f'"{x}"' for x in row) + "]" for row in rows) + "]"
-    head = SWITCHED.partition("  - ")[0]
-    spec = switched(f"{head}  - {{name: a, A: {matrix}}}\nswitching: arbitrary\n")
-    assert numbers(spec.modes[0]) == [tuple(row) for row in rows]
-
-
-def coprime(count: int, digits: int = 90) -> list[str]:
-    """Return numbers over denominators that have next to nothing in common."""
-    return [f"-1/{10 ** (digits - 1) + 1 + 2 * k}" for k in range(count)]
-
-
-def test_a_long_common_denominator_is_refused_where_it_is_read() -> None:
-    (a, b, c, d), few = coprime(4), coprime(3)
-    assert (
-        "1024 binary digits"
-        in refusal(spoiled(SWITCHED, "[[-1, -1], [1, -1]]", f"[[{a}, {b}], [{c}, {d}]]")).message
-    )
-    text = spoiled(SWITCHED, "[[-1, -1], [1, -1]]", f"[[{few[0]}, {few[1]}], [{few[2]}, -1]]")
-    assert switched(text).dimension == 2

@@ -5,12 +5,7 @@ from fractions import Fraction
 from nrs_design.spec.switching import DwellTime
 from tests.tables import edited, spec_text
 
-from .samples import (
-    SWITCHED,
-    refusal,
-    spoiled,
-    switched,
-)
+from .samples import switched
 
 
 def test_only_allowed_switches_need_a_reset() -> None:
@@ -27,16 +22,3 @@ def test_times_by_mode() -> None:
     assert str(rules) == (
         "dwell time 2 steps in b, longest dwell time 1 step in a, longest dwell time 5 steps in b"
     )
-
-
-def test_one_longest_time_for_all() -> None:
-    rules = switched(spoiled(SWITCHED, "arbitrary", "{longest_dwell_time: 3 s}")).switching
-    assert {rules.stay(name)[1] for name in "ab"} == {DwellTime("3 s", Fraction(3), "s")}
-
-
-def test_several_resets_from_one_mode_to_another() -> None:
-    other = "  - {from: a, to: b, map: [[2, 0], [0, 1]]}\n"
-    spec = switched(spec_text("resets") + other)
-    assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b"), ("a", "b")]
-    error = refusal(spec_text("resets") + other + spoiled(other, "[2, 0]", "[2.0, 0]"))
-    assert "this reset is listed twice" in error.message

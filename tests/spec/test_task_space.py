@@ -5,7 +5,6 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at, is_there, read_axes
-from nrs_design.spec.task_space import file_of
 from tests.support import replaced
 from tests.tables import rows, spec_text
 
@@ -44,14 +43,6 @@ def test_places_are_those_of_the_file(write):
     assert rx.place("name").line == 14
 
 
-def test_an_axis_is_what_its_keys_and_those_in_common_say(write, tmp_path):
-    """The order of keys counts in the hash; here it is the same."""
-    (_, rx) = read_axes(write())
-    path = tmp_path / "alone.nrs.yaml"
-    path.write_text(spec_text("one-axis-alone"), encoding="utf-8")
-    assert read_spec(path).sha256 == rx.sha256
-
-
 @pytest.mark.parametrize(
     ("old", "new", "line", "said"), rows(__file__, "test_what_is_wrong_is_told_at_its_place")
 )
@@ -78,13 +69,6 @@ def test_a_file_without_axes_has_none(tmp_path):
     assert axes_at(path) == (path,)
     with pytest.raises(SpecError, match="holds no axes"):
         read_spec(f"{path}#x")
-
-
-def test_a_file_may_have_the_mark_in_its_name(tmp_path):
-    path = tmp_path / "arm#2.nrs.yaml"
-    path.write_text(TEXT, encoding="utf-8")
-    assert file_of(path) == path
-    assert [item.spec.name for item in read_axes(path)] == ["two-z", "two-rx"]
 
 
 def test_an_axis_is_there_while_the_file_has_it(write):

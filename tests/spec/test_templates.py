@@ -5,7 +5,6 @@ import pytest
 
 from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.load import read_axes
-from nrs_design.spec.switching import parse_dwell_time
 from nrs_design.spec.templates import TEMPLATES
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,15 +20,6 @@ def test_templates_load_and_point_to_their_schema(name: str, tmp_path: Path) -> 
         assert isinstance(axis.spec, RobotSpec) or axis.spec.switching.is_arbitrary
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 105
-
-
-@pytest.mark.parametrize("name", TEMPLATES)
-def test_every_key_is_explained(name: str) -> None:
-    # A key has a comment beside it, or stands in a block that is introduced by one.
-    lines = TEMPLATES[name].splitlines()
-    for number, line in enumerate(lines):
-        if line and not line.startswith((" ", "#")):
-            assert "#" in line or lines[number - 1].startswith("#"), line
 
 
 def test_robot_template_is_the_shipped_robot() -> None:
@@ -53,18 +43,3 @@ def test_parameters_rules_and_resets_of_the_template_are_right() -> None:
     assert [mode.parameters for mode in spec.modes] == [set(), set(), {"k", "m"}]
     assert spec.switching.transitions == (("a", "b"), ("b", "a"), ("b", "c"), ("c", "a"))
     assert [(reset.source, reset.target) for reset in spec.resets] == [("a", "b")]
-
-
-@pytest.mark.parametrize(("name", "goals"), [("interaction-design", 7), ("hybrid-force", 3)])
-def test_rules_between_controllers_and_goals_are_right(name: str, goals: int) -> None:
-    spec = parse_spec(uncommented(name))
-    a, b = spec.controllers
-    assert spec.switching.transitions == ((a, b), (b, a))
-    assert len(dict(spec.goals.given())) == goals
-
-
-@pytest.mark.parametrize("name", ["hybrid-force", "interaction-design", "switched-system"])
-def test_dwell_time_of_the_template_is_right(name: str) -> None:
-    shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
-    assert shown
-    assert parse_dwell_time(shown[1]).unit == "s"

@@ -93,10 +93,3 @@ def test_the_switch_of_the_thesis_may_chatter():
     held = parse_spec(text + "  hold: 50 ms\n").mode_logic
     assert held.stay("force").text == "50 ms"
     assert held.held_back("force") == Fraction(50, 1000)
-
-
-@pytest.mark.parametrize("rules", ["arbitrary", "{dwell_time: 5 ms}"])
-def test_rules_that_the_logic_keeps(rules):
-    spec = parse_spec(text("switching: mode-logic", f"switching: {rules}"))
-    assert spec.mode_logic.rules().stay("insertion")[0].text == "0.00518 s"
-    assert str(spec.switching).startswith(rules.strip("{}").replace("_", " ").replace(":", ""))

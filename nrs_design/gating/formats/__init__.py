@@ -1,15 +1,13 @@
-"""What the gate prints: for people, GitHub, code scanners, test reporters and READMEs."""
+"""What the gate prints: for people, GitHub, code scanners and test reporters."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from nrs_design.gating.formats.badge import to_badge
 from nrs_design.gating.formats.github import to_github
 from nrs_design.gating.formats.json_document import to_json
 from nrs_design.gating.formats.junit import to_junit
-from nrs_design.gating.formats.markdown import to_markdown
 from nrs_design.gating.formats.sarif import to_sarif
-from nrs_design.gating.formats.text import to_text
+from nrs_design.gating.formats.text import to_markdown, to_text
 from nrs_design.gating.obligations import GateOutcome
 
 FORMATS: Mapping[str, Callable[[GateOutcome], str]] = MappingProxyType(
@@ -20,6 +18,5 @@ FORMATS: Mapping[str, Callable[[GateOutcome], str]] = MappingProxyType(
         "junit": to_junit,
         "json": to_json,
         "markdown": to_markdown,
-        "badge": to_badge,
     }
 )

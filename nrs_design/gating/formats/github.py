@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from nrs_design.gating.obligations import Caution, GateOutcome, Obligation
-from nrs_design.gating.paths import from_here
+from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, from_here
 from nrs_design.printable import printable
 from nrs_design.spec.task_space import file_of
 
-# GitHub shows no more than ten annotations of each type per step, whichever come first.
-MAX_ANNOTATIONS = 10
-
 
 def to_github(outcome: GateOutcome) -> str:
-    """Return one ``::error`` command per failure, worst first, and a notice if there are more."""
+    """Return one ``::error`` command per failure, worst first, then one for each warning."""
     errors = [
         _annotation("error", i, i.rule.id, f"{i.rule.title}: {i.status}. {i.message}")
         for i in outcome.findings
@@ -20,16 +16,7 @@ def to_github(outcome: GateOutcome) -> str:
     changed = () if outcome.changes is None else outcome.changes.others
     cautions = (*outcome.cautions, *changed)
     warnings = [_annotation("warning", i, "nrs-design", i.message) for i in cautions]
-    lines = (*_first(errors, "more"), *_first(warnings, "more warnings"))
-    return "".join(f"{line}\n" for line in lines)
-
-
-def _first(annotations: list[str], what: str) -> list[str]:
-    """Return as many annotations as GitHub shows, and a notice of the others."""
-    if (more := len(annotations) - MAX_ANNOTATIONS) <= 0:
-        return annotations
-    notice = f"::notice title=nrs-design::{more} {what} not shown; see the log of this step"
-    return [*annotations[:MAX_ANNOTATIONS], notice]
+    return "".join(f"{line}\n" for line in (*errors, *warnings))
 
 
 def _annotation(kind: str, item: Obligation | Caution, title: str, text: str) -> str:

@@ -4,8 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from nrs_design.gating.obligations import BaseChanges, Caution, GateOutcome, Obligation, SpecOutcome
-from nrs_design.gating.paths import from_here
+from nrs_design.gating.obligations import (
+    BaseChanges,
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    from_here,
+)
 from nrs_design.printable import json_text
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status
-from nrs_design.gating.paths import from_here
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, from_here
 from nrs_design.printable import printable
 
 

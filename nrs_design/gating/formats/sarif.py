@@ -6,8 +6,7 @@ import hashlib
 from typing import Any
 
 from nrs_design import __version__
-from nrs_design.gating.obligations import GateOutcome, Obligation
-from nrs_design.gating.paths import relative_uri
+from nrs_design.gating.obligations import GateOutcome, Obligation, relative_uri
 from nrs_design.gating.rules import RULES, Rule
 from nrs_design.printable import json_text
 from nrs_design.spec.task_space import file_of

@@ -1,4 +1,4 @@
-"""For people: one table, and a line for every obligation that is not fulfilled."""
+"""For people: one table, and a line for every broken obligation; as Markdown for a review, too."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from nrs_design.proof.text import counted
 
 COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
 SHORT_ID = 12
+# What Markdown or HTML would take for markup.
+_MARKUP = str.maketrans({c: f"&#{ord(c)};" for c in "\\`*_{}[]<>()#+-!|&~@:"})
 
 
 def to_text(outcome: GateOutcome) -> str:
@@ -110,3 +112,33 @@ def summary_line(outcome: GateOutcome) -> str:
     ending = "all fulfilled" if not broken else f"{broken} not fulfilled (nrs-design explain RULE)"
     specs = counted(len(outcome.specs), "spec")
     return f"{specs}: {counts}; {counted(total, 'obligation')}, {ending}"
+
+
+def to_markdown(outcome: GateOutcome) -> str:
+    """Return the sum, what is not fulfilled or weaker than the base, and a row for each spec."""
+    sign = "❌" if outcome.broken else "✅"
+    parts = [f"### {sign} nrs-design: {_plain(summary_line(outcome))}", ""]
+    if outcome.broken:
+        parts += [*(f"- {_plain(line_of(item))}" for item in outcome.findings), ""]
+    if outcome.changes is not None:
+        others = len(outcome.changes.others)
+        parts += [f"Against the base: {outcome.changes.weaker} weaker, {others} other changes.", ""]
+    parts += [
+        "<details><summary>every spec</summary>",
+        "",
+        *_markdown_table(outcome),
+        "",
+        "</details>",
+    ]
+    return "\n".join(parts) + "\n"
+
+
+def _markdown_table(outcome: GateOutcome) -> list[str]:
+    rows = [COLUMNS, ("---",) * len(COLUMNS)]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    return [*lines, *(f"| {' | '.join(map(_plain, row))} |" for row in rows_of(outcome))]
+
+
+def _plain(text: str) -> str:
+    """Write text of strangers so that nothing in it is markup, a link or a mention."""
+    return printable(text).translate(_MARKUP)

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.gating.formats.github import to_github
-from nrs_design.gating.obligations import Caution, Status
+from nrs_design.gating.obligations import Caution
 from tests.gating.formats.support import obligation, outcome_of
 
 
@@ -21,15 +21,6 @@ def test_escapes():
     assert line.endswith("50%25\\r\\n::x\n")
 
 
-def test_at_most_ten_and_a_notice():
-    items = [obligation(Status.INCONCLUSIVE)] * 9 + [obligation()] * 3
-    lines = to_github(outcome_of(*items)).splitlines()
-    assert [line.split("::")[1].split()[0] for line in lines] == ["error"] * 10 + ["notice"]
-    assert all(": refuted." in line for line in lines[:3])
-    assert lines[-1] == "::notice title=nrs-design::2 more not shown; see the log of this step"
-    assert "notice" not in to_github(outcome_of(*[obligation()] * 10))
-
-
 def test_warnings_come_after_errors():
     caution = Caution(Path("specs/a,b.nrs.yaml"), "Mt is on its bound, 50%", 3, 5)
     document = to_github(outcome_of(obligation(), cautions=(caution,)))
@@ -37,16 +28,6 @@ def test_warnings_come_after_errors():
         "::warning file=specs/a%2Cb.nrs.yaml,line=3,col=5,title=nrs-design::"
         "Mt is on its bound, 50%25"
     )
-    assert to_github(outcome_of(cautions=(caution,) * 12)).count("::warning") == 10
-
-
-def test_place_that_is_not_known():
-    line = to_github(outcome_of(obligation(line=None, column=None)))
-    assert "line=1,col=1" in line
-
-
-def test_nothing_to_say():
-    assert to_github(outcome_of(obligation(Status.PROVED))) == ""
 
 
 @given(st.text(), st.text(st.characters(exclude_characters="\0/", codec="utf-8")))

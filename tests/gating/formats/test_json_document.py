@@ -3,7 +3,7 @@ from pathlib import Path
 
 from nrs_design.gating.formats.json_document import to_json
 from nrs_design.gating.obligations import Caution
-from tests.gating.formats.support import GAINS, obligation, outcome_of
+from tests.gating.formats.support import obligation, outcome_of
 
 
 def test_envelope(mixed):
@@ -22,11 +22,6 @@ def test_envelope(mixed):
         "line": 7,
         "column": 3,
     }
-
-
-def test_gains_are_exact():
-    (spec,) = json.loads(to_json(outcome_of(obligation(), gains=GAINS)))["specs"]
-    assert spec["gains"] == GAINS
 
 
 def test_warnings_of_each_spec():

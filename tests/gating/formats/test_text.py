@@ -1,13 +1,7 @@
 import re
 from html import unescape
-from xml.etree import ElementTree
 
-import pytest
-
-from nrs_design.gating.formats.badge import to_badge
-from nrs_design.gating.formats.markdown import to_markdown
-from nrs_design.gating.formats.text import to_text
-from nrs_design.gating.obligations import Status
+from nrs_design.gating.formats.text import to_markdown, to_text
 from tests.gating.formats.support import GAINS, HOSTILE, obligation, outcome_of
 
 
@@ -33,11 +27,6 @@ def test_gains_are_shown_by_their_shortest_single_precision_decimals():
     assert "gains" not in to_text(outcome_of(obligation()))
 
 
-def test_one_of_a_kind():
-    assert "1 spec: " in to_text(outcome_of(obligation()))
-    assert "; 1 obligation, " in to_text(outcome_of(obligation()))
-
-
 def test_hostile_text_steers_no_terminal():
     text = to_text(outcome_of(obligation(path=f"specs/{HOSTILE}", message=HOSTILE)))
     assert all(line.isprintable() for line in text.split("\n"))
@@ -56,21 +45,3 @@ def test_what_strangers_wrote_is_no_markup():
     shown = text.replace("<details><summary>every spec</summary>", "").replace("</details>", "")
     assert not re.search(r"<|@|\]\(", shown)
     assert "<b> @all [x](y)" in unescape(text)
-
-
-@pytest.mark.parametrize(
-    ("outcome", "said", "colour"),
-    [
-        (outcome_of(obligation(Status.PROVED), verdict="proved"), "1 proved", "#00664b"),
-        (outcome_of(obligation(), verdict="refuted"), "1 refuted", "#a63603"),
-        (outcome_of(obligation(), verdict="inconclusive"), "1 inconclusive", "#6b5b00"),
-        # A proof beside a goal that is missed is not green, nor is nothing at all.
-        (outcome_of(obligation(Status.MISSED), verdict="proved"), "1 not fulfilled", "#a63603"),
-        (outcome_of(), "0 proved", "#6b5b00"),
-    ],
-)
-def test_it_says_the_worst(outcome, said, colour):
-    root = ElementTree.fromstring(to_badge(outcome))
-    space = "{http://www.w3.org/2000/svg}"
-    assert root.find(f"{space}title").text == f"switching: {said}"
-    assert root.findall(f"{space}rect")[1].get("fill") == colour

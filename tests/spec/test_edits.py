@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.instead import saying_instead
+from nrs_design.spec.edits import saying_instead
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 TORQUE = (("limits", "torque"), "0.2 N*m")

@@ -26,8 +26,9 @@ from nrs_design.proof.exact import (
     scaled,
     spectrum_work,
 )
-from tests.proof.truth import times, transpose
-from tests.support import is_definite_by_ldl, is_stable_by_lyapunov, matrix
+from nrs_design.proof.mode import Time
+from tests.proof.truth import is_definite, is_stable_by_lyapunov, times, transpose
+from tests.support import matrix
 from tests.tables import rows
 
 SMALL = st.integers(-4, 4)
@@ -89,7 +90,7 @@ class TestPositiveDefinite:
     @given(squares(st.one_of(SMALL, WIDE)))
     def test_against_elimination_in_fractions(self, M):
         S = symmetric(M)
-        assert is_positive_definite(S) == is_definite_by_ldl(S)
+        assert is_positive_definite(S) == is_definite(S)
 
     @pytest.mark.parametrize(
         "M",
@@ -230,7 +231,7 @@ class TestHurwitz:
 
     def agree(self, N, shift):
         shifted = [[e - shift * (i == j) for j, e in enumerate(r)] for i, r in enumerate(N)]
-        assert is_hurwitz(shifted) == is_stable_by_lyapunov(shifted)
+        assert is_hurwitz(shifted) == is_stable_by_lyapunov(shifted, Time.CONTINUOUS)
 
 
 class TestSchur:
@@ -254,7 +255,7 @@ class TestSchur:
 
     def agree(self, N, denominator):
         A = [[Fraction(e, denominator) for e in row] for row in N]
-        assert is_schur(N, denominator) == is_stable_by_lyapunov(A, discrete=True)
+        assert is_schur(N, denominator) == is_stable_by_lyapunov(A, Time.DISCRETE)
 
 
 @pytest.mark.parametrize("n", [16, 32])

@@ -61,9 +61,9 @@ from tests.proof.systems import (
     shears,
     slow_switching_in_steps,
 )
-from tests.proof.truth import edge_form, edges_at, holds, is_in_other_units, moves
+from tests.proof.truth import edge_form, edges_at, holds, is_definite, is_in_other_units, moves
 from tests.search.support import found as accepted
-from tests.support import broken, ends_soon, is_definite_by_ldl
+from tests.support import broken, ends_soon
 
 HALF, STEPS = Fraction(1, 2), Time.DISCRETE
 I2 = ((1, 0), (0, 1))
@@ -632,7 +632,7 @@ def quartic(*values: int) -> FormsOnGraph:
 )
 def test_one_condition_fails_and_the_family_grows(system, evidence, words):
     assert evidence.find_misfit(system) is None
-    failing = [why for why, form in evidence.forms(system) if not is_definite_by_ldl(form)]
+    failing = [why for why, form in evidence.forms(system) if not is_definite(form)]
     assert len(failing) == 1
     assert words in failing[0]
     assert failing[0] in evidence.find_fault(system)

@@ -54,8 +54,8 @@ from tests.proof.systems import (
     shears,
     sucking_in,
 )
-from tests.proof.truth import holds
-from tests.support import ends_soon, is_stable_by_lyapunov
+from tests.proof.truth import holds, is_stable_by_lyapunov
+from tests.support import ends_soon
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 STEPS = Time.DISCRETE
@@ -158,7 +158,7 @@ def test_against_the_lyapunov_equation(entries, time):
     """Another algorithm, without a characteristic polynomial."""
     rows = [[Fraction(e, 5) for e in entries[i : i + 3]] for i in (0, 3, 6)]
     system = family(rows, time=time)
-    stable = is_stable_by_lyapunov(rows, discrete=time is Time.DISCRETE)
+    stable = is_stable_by_lyapunov(rows, time)
     assert is_stable(system.modes[0].A, time) is stable
     evidence = staying("m0")
     assert (evidence.find_fault(system) is None) is not stable

@@ -34,11 +34,11 @@ from tests.proof.truth import (
     combine,
     holds,
     inequality,
+    is_definite,
     is_in_other_units,
     is_positive_multiple,
     moves,
 )
-from tests.support import is_definite_by_ldl
 
 
 def pushing(Q, log2, share, level, *multipliers):
@@ -190,7 +190,7 @@ def test_each_condition_in_steps_bars_a_set_that_is_left(where):
         broken = {
             failure.removeprefix("the ellipsoid can be left ")
             for failure, form in candidate.forms(system)
-            if not is_definite_by_ldl(form)
+            if not is_definite(form)
         }
         assert where in broken
         assert candidate.find_fault(system) is not None

@@ -59,7 +59,6 @@ ELSEWHERE = {
         "certificates/second_opinion": ("certificates/test_second_opinion.py",),
         "controllers/taylor": ("controllers/test_taylor.py",),
         "design/largest_ratio": ("design/test_largest_ratio.py",),
-        "design/least_cost": ("design/test_least_cost.py",),
         "spec/power": ("spec/test_power.py",),
     }.items()
 }
@@ -75,7 +74,7 @@ hypothesis.settings.register_profile(
     deadline=None,
     phases=(hypothesis.Phase.explicit, hypothesis.Phase.generate),
 )
-OPTIONS = ("-x", "-s", "-m", "not slow", "--hypothesis-profile", "mutation")
+OPTIONS = ("-x", "-s", "--hypothesis-profile", "mutation")
 # Nothing is reported but by us, and hypothesis is loaded before pytest could rewrite its asserts.
 QUIET = ("-qq", "--no-header", "--no-summary", "-p", "no:cacheprovider", "-p", "no:xdist")
 QUIET += ("-W", "ignore::pytest.PytestAssertRewriteWarning")
@@ -96,15 +95,17 @@ class Examination:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
-        # So that no process copies what is there already, only to look through it.
-        gc.freeze()
         # In memory that the processes share: what each test took, and which one is run.
         self.took = RawArray("d", [60.0] * len(session.items))
         self.running_test = RawValue("i")
         self.order = list(range(len(session.items)))
-        if os.waitpid(self.start(session, None), 0)[1]:
+        # In this process, so that what a search has found is there for all mutants.
+        if self.run(session, None):
             raise session.Failed(f"{self.name}: its tests fail without any change")
+        signal.setitimer(signal.ITIMER_PROF, 0)
         self.order.sort(key=self.took.__getitem__)
+        # So that no process copies what is there already, only to look through it.
+        gc.freeze()
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -126,11 +127,14 @@ class Examination:
         self.order.remove(killer)
         self.order.insert(0, killer)
 
-    def start(self, session: pytest.Session, mutant: Mutant | None) -> int:
-        """Begin the run for a mutant, or for the module as it is."""
+    def start(self, session: pytest.Session, mutant: Mutant) -> int:
+        """Begin the run for a mutant."""
         if pid := os.fork():
             return pid
-        status = 1
+        status, silence = 1, os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         try:
             status = self.run(session, mutant)
         finally:
@@ -138,10 +142,6 @@ class Examination:
 
     def run(self, session: pytest.Session, mutant: Mutant | None) -> int:
         """Run the tests up to the first failure."""
-        silence = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(silence, 1)
-        os.dup2(silence, 2)
-        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         if mutant:
             graft(importlib.import_module(self.name), mutant.compile(self.path))

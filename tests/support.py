@@ -25,8 +25,9 @@ from nrs_design.cli import main
 from nrs_design.proof.evidence.abstract import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Switching
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import LoadedSpec, parse_exact, read_spec
+from nrs_design.spec import LoadedSpec, read_spec
 from tests.proof import truth
 
 ROOT = Path(__file__).parents[1]
@@ -45,6 +46,7 @@ PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
 # Processor seconds: several times what a slow machine needs, a small part of what a hang takes.
 SOON = 20.0
 Entry = int | str | Fraction
+Rows = Sequence[Sequence[Entry]]
 # Dayawansa and Martin 1999, a = 11.2: stable, but only a polynomial of about degree 40 shows it.
 HARD = ([[-1, -1], [1, -1]], [[-1, "-11.2"], ["5/56", -1]])
 
@@ -68,27 +70,32 @@ def ends_soon() -> Iterator[None]:
     assert process_time() - start < SOON
 
 
-def exact(rows: Sequence[Sequence[Entry]]) -> list[list[Fraction]]:
+def matrix(rows: Rows) -> RationalMatrix:
     """Read a matrix of integers, fractions or exact decimals."""
-    return [[parse_exact(e) if isinstance(e, str) else Fraction(e) for e in row] for row in rows]
+    return RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in rows])
 
 
-def matrix(rows: Sequence[Sequence[Entry]]) -> RationalMatrix:
-    return RationalMatrix.from_rows(exact(rows))
+def family(
+    *matrices: Rows,
+    time: Time = Time.CONTINUOUS,
+    switching: Switching = ARBITRARY,
+    names: Sequence[str] | None = None,
+) -> SwitchedSystem:
+    """Make a system with modes m0, m1, ... of any sizes."""
+    labels = names or [f"m{i}" for i in range(len(matrices))]
+    modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
+    states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
+    return SwitchedSystem(
+        name="family", time=time, states=states, modes=modes, assumptions=(), switching=switching
+    )
 
 
-def family(*matrices: Sequence[Sequence[Entry]], time: Time = Time.CONTINUOUS) -> SwitchedSystem:
-    """Make a switched system with modes m0, m1, ..."""
-    modes = tuple(Mode(f"m{i}", matrix(rows)) for i, rows in enumerate(matrices))
-    states = tuple(f"x{i + 1}" for i in range(len(matrices[0])))
-    return SwitchedSystem(name="family", time=time, states=states, modes=modes, assumptions=())
-
-
-def dayawansa_martin(a: Entry, scale: Entry = 1) -> SwitchedSystem:
-    """Pair with a common quadratic Lyapunov function iff a < 3 + 2 sqrt(2)."""
-    value, factor = exact([[a, scale]])[0]
-    pair = [[[-1, -1], [1, -1]], [[-1, -value], [1 / value, -1]]]
-    return family(*([[factor * e for e in row] for row in A] for A in pair))
+def dayawansa_martin(
+    a: Entry, scale: Entry = 1, switching: Switching = ARBITRARY
+) -> SwitchedSystem:
+    """Quadratic iff a < 5.8284..., stable iff a < 11.2608... (Dayawansa and Martin 1999)."""
+    a, c = Fraction(a), Fraction(scale)
+    return family([[-c, -c], [c, -c]], [[-c, -c * a], [c / a, -c]], switching=switching)
 
 
 def write_spec(

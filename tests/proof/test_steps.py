@@ -4,8 +4,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output, Rounding
@@ -15,7 +13,7 @@ from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Acting, flow_step, map_step, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.graphs import common_quadratic, forms_of_steps, one_form
+from tests.proof.graphs import common_quadratic, forms_of_steps
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, crowded, family, matrix
 from tests.proof.truth import (
     combine,
@@ -62,52 +60,6 @@ def test_without_its_roundings_a_growing_law_would_pass():
             assert "does not decrease" in covered.find_fault(system)
 
 
-def conewise(Q, log2, rate, crossings, roundings):
-    system, numbers = bouncing_and_rounded("1/4"), {"crossings": crossings, "roundings": roundings}
-    return one_form(system, Q, log2, Fraction(rate), **numbers, lost=True)
-
-
-def bouncing_and_rounded(share: Entry, *, deflects: bool = False) -> SwitchedSystem:
-    """A mass on a spring that pushes only; the force, in the air the velocity, is rounded."""
-    system = bouncing_in_steps()
-    columns = (matrix([[0], [1]] if deflects else [[1], [0]]),) * 3
-    rows = (matrix([[0, share]]), matrix([[0, share]]), matrix([[share, 0]]))
-    return replace(system, roundings=(Rounding("F", columns, rows),))
-
-
-BOUNCE = conewise(((3059, 1375), (1375, 3495)), 8, "0.999", (2598,), (60_000,))
-
-
-def test_a_bouncing_mass_that_rounds():
-    for deflects in (False, True):
-        system = bouncing_and_rounded("1/1000", deflects=deflects)
-        assert BOUNCE.find_fault(system) is None
-        assert agrees(system, BOUNCE)
-        assert holds(system, BOUNCE)
-        coarse = bouncing_and_rounded("1/4", deflects=deflects)
-        assert BOUNCE.find_fault(coarse) is not None
-
-
-@pytest.mark.parametrize(
-    ("where", "Q"),
-    [
-        # Each of these errors acts in one motion only, and throws the state far.
-        ("in mode m0", 0),
-        ("in free motion, mode free", 1),
-    ],
-)
-def test_an_error_in_any_motion_counts(where, Q):
-    system = bouncing_and_rounded("1/1000")
-    item = system.roundings[0]
-    rows = list(item.rows)
-    rows[2 * Q] = matrix([[4, 0]])
-    wild = replace(system, roundings=(replace(item, rows=tuple(rows)),))
-    assert BOUNCE.find_fault(wild).endswith(where)
-    for tau in (0, 1, 100, 10_000, 10**6):
-        item = conewise(BOUNCE.nodes[0].form, 8, "0.999", (2598,), (tau,))
-        assert item.find_fault(wild) is not None
-
-
 def test_a_disturbance_is_rounded_too():
     """z+ = z/2 + d + r, |r| <= |d|/2: from rest up to 3; no set below shows it."""
     system = replace(
@@ -136,32 +88,6 @@ def test_a_disturbance_is_rounded_too():
         assert candidate(Fraction("2.99"), Fraction(t, 200)).find_fault(system) is not None
 
 
-@settings(deadline=None)
-@given(
-    st.lists(st.integers(-8, 8), min_size=4, max_size=4),
-    st.lists(st.integers(-4, 4), min_size=6, max_size=6),
-    st.lists(st.integers(-6, 6), min_size=3, max_size=3),
-    st.integers(0, 6),
-    st.integers(0, 40),
-)
-def test_against_the_definition(contact, errors, Q, multiplier, tau):
-    """The definition in fractions, decided by another elimination."""
-    a, b, c, d = (Fraction(entry, 8) for entry in contact)
-    p, q, r, s, t, u = (Fraction(entry, 16) for entry in errors)
-    system = bouncing_in_steps()
-    flight = [mode.A for mode in system.contact.free]
-    columns = (matrix([[p], [q]]),) * 2
-    item = Rounding("F", columns, (matrix([[r, s]]), matrix([[t + u, 0]])))
-    system = replace(
-        family([[a, b], [c, d]], time=Time.DISCRETE),
-        contact=replace(system.contact, free=system.contact.free[: len(flight)]),
-        roundings=(item,),
-    )
-    x, y, z = Q
-    candidate = conewise(((x, y), (y, z)), 2, "0.95", (multiplier,), (tau,))
-    assert (candidate.find_fault(system) is None) == holds(system, candidate)
-
-
 Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
 WEIGHTS = (Fraction(2, 3), Fraction(3, 5))
 
@@ -187,23 +113,6 @@ def test_every_form_by_hand(keeps, acting, roundings):
         for (where, form), (true_where, true) in zip(found, wanted, strict=True):
             assert where == true_where
             assert is_in_other_units(form, true)
-
-
-@pytest.mark.parametrize("acting", [(), (2, 0)])
-def test_errors_of_a_flow_by_hand(acting):
-    """No system with these makes sense, as nothing is rounded in between; the form is right."""
-    system = replace(crowded(Time.DISCRETE, lost=False), time=Time.CONTINUOUS)
-    assert "there are no steps" in find_contradiction(system)
-    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
-    known = {"rounding 1": Fraction(4, 4), "rounding 2": Fraction(9, 4)}
-    keeps = Fraction(5, 7)
-    wanted = [
-        inequality(move, quarters, quarters, keeps, known.get, weights)
-        for move in moves(system, lost=False, channels=acting, rounding=True)
-    ]
-    found = forms_of_steps(system, Acting(acting, weights, True), (Q3, 2), keeps, (), (4, 9))
-    for (_, form), true in zip(found, wanted, strict=True):
-        assert is_positive_multiple(form, true)
 
 
 def test_names_of_multipliers():

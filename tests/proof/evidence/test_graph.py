@@ -22,7 +22,7 @@ from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Stays
-from nrs_design.proof.switching import Clock, Reset, Stay, Switching
+from nrs_design.proof.switching import Clock, Reset, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
@@ -405,13 +405,6 @@ class TestTurns:
         exact = replace(evidence, multipliers=kept)
         assert exact.find_fault(system) is None
         assert NOT_ROUNDED in exact.claim(system)
-        item = system.roundings[0]
-        for where in range(5):
-            rows = list(item.rows)
-            rows[where] = replace(rows[where], denominator=1, numerators=((4, 0),))
-            other = replace(system, roundings=(replace(item, rows=tuple(rows)),))
-            assert exact.find_fault(other) is None
-            assert evidence.find_fault(other) is not None
 
 
 class TestStays:
@@ -426,25 +419,6 @@ class TestStays:
         system = shears(replace(rules, fixed_ends=(("m0", "m1"),)))
         found = self.by_modes(shears(rules)).evidence
         assert found is None or "kind of switching" in found.find_fault(system)
-
-    def test_the_middle_of_a_stay_counts(self):
-        """A turn that is harmless at both ends of a stay, and not in between."""
-        turn = [[0, "3.14159265"], ["-3.14159265", 0]]
-        stays = (("m0", Stay(Fraction(1), Fraction(2))), ("m1", Stay(Fraction(1))))
-        system = family(turn, [[-1, 0], [0, -1]], switching=Switching(stays=stays))
-        forms = (("m0", ((100, 0), (0, 4))), ("m1", ((60, 0), (0, 2))))
-        evidence = mode_quadratic(forms, 0, Fraction(1, 1000), ("m0",), 256)
-        assert not holds(system, evidence)
-        assert "after some stay" in evidence.find_fault(system)
-        for end in stays[0][1].shortest, stays[0][1].longest:
-            rules = Switching(stays=(("m0", Stay(end, end)), stays[1]))
-            only = replace(evidence, stays=Stays(("m0",)))
-            assert only.find_fault(replace(system, switching=rules)) is None
-        large = with_form(with_form(evidence, 0, ((100, 0), (0, 90))), 1, ((60, 0), (0, 59)))
-        assert large.find_fault(system) is None
-        assert holds(system, large)
-        # Pieces that are too coarse show nothing.
-        assert "after some stay" in replace(large, stays=Stays(("m0",))).find_fault(system)
 
     @pytest.mark.parametrize("exponent", [3, 12, 300])
     def test_stiff_modes_neither_hang_nor_crash(self, exponent):

@@ -9,7 +9,7 @@ from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
+from nrs_design.proof.evidence.abstract import ROUNDED
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Acting, flow_step, map_step, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
@@ -46,18 +46,6 @@ def test_the_exact_rate_of_one_state():
     for tau in range(20):
         fast = common_quadratic(((8,),), 3, Fraction("0.7499"), (tau,))
         assert "does not decrease" in fast.find_fault(system)
-
-
-def test_without_its_roundings_a_growing_law_would_pass():
-    """x+ = 3/4 x + r with |r| <= |x|/2 may grow by 5/4 a step."""
-    system = rounded("3/4", "1/2")
-    exact = common_quadratic(((1,),), 0, Fraction("0.8"))
-    assert exact.find_fault(system) is None
-    assert exact.claim(system).endswith(NOT_ROUNDED)
-    for tau in range(1, 40):
-        for rate in ("0.8", "0.999"):
-            covered = common_quadratic(((8,),), 3, Fraction(rate), (tau,))
-            assert "does not decrease" in covered.find_fault(system)
 
 
 def test_a_disturbance_is_rounded_too():
@@ -113,6 +101,23 @@ def test_every_form_by_hand(keeps, acting, roundings):
         for (where, form), (true_where, true) in zip(found, wanted, strict=True):
             assert where == true_where
             assert is_in_other_units(form, true)
+
+
+@pytest.mark.parametrize("acting", [(), (2, 0)])
+def test_errors_of_a_flow_by_hand(acting):
+    """No system with these makes sense, as nothing is rounded in between; the form is right."""
+    system = replace(crowded(Time.DISCRETE, lost=False), time=Time.CONTINUOUS)
+    assert "there are no steps" in find_contradiction(system)
+    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
+    known = {"rounding 1": Fraction(4, 4), "rounding 2": Fraction(9, 4)}
+    keeps = Fraction(5, 7)
+    wanted = [
+        inequality(move, quarters, quarters, keeps, known.get, weights)
+        for move in moves(system, lost=False, channels=acting, rounding=True)
+    ]
+    found = forms_of_steps(system, Acting(acting, weights, True), (Q3, 2), keeps, (), (4, 9))
+    for (_, form), true in zip(found, wanted, strict=True):
+        assert is_positive_multiple(form, true)
 
 
 def test_names_of_multipliers():

@@ -7,21 +7,17 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic
 from tests.proof.rows import cases, check
 from tests.proof.systems import (
     Entry,
-    Rows,
     bouncing,
     bouncing_in_steps,
     crowded,
@@ -31,7 +27,6 @@ from tests.proof.systems import (
 )
 from tests.proof.truth import (
     combine,
-    holds,
     inequality,
     is_in_other_units,
     is_positive_multiple,
@@ -126,42 +121,6 @@ def test_the_bound_in_numbers():
 
 def test_a_function_that_decreases_bounds_no_output():
     assert common_quadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
-
-
-def moved(
-    contact: Rows, free: Rows, B: Rows, B_free: Rows, time: Time, *pulls: Rows
-) -> SwitchedSystem:
-    rows = tuple(matrix(q) for q in pulls)
-    return replace(
-        family(contact, time=time),
-        contact=Contact((Mode("f", matrix(free)),), rows),
-        channels=(Channel("push", "N", Fraction(1), (matrix(B), matrix(B_free))),),
-        outputs=(Output("force", "N", (matrix([[0, 1]]),)),),
-    )
-
-
-@settings(deadline=None)
-@given(
-    st.lists(st.integers(-8, 8), min_size=4, max_size=4),
-    st.lists(st.integers(-8, 8), min_size=2, max_size=2),
-    st.lists(st.integers(-4, 4), min_size=4, max_size=4),
-    st.lists(st.integers(-6, 6), min_size=3, max_size=3),
-    st.integers(0, 6),
-    st.fractions("1/10", 2),
-    st.fractions("1/2", 4),
-    st.sampled_from(list(Time)),
-)
-def test_against_the_definition(contact, free, columns, Q, multiplier, share, level, time):
-    """The definition in fractions, decided by another elimination."""
-    a, b, c, d = (Fraction(entry, 8) for entry in contact)
-    moves = Fraction(int(time is Time.DISCRETE))
-    B, B_free = ([[Fraction(columns[k], 8)], [Fraction(columns[k + 1], 8)]] for k in (0, 2))
-    pulls = ([[1, 2]],) if time is Time.CONTINUOUS else ()
-    flight = [[Fraction(free[0], 8), 0], [Fraction(free[1], 8), moves]]
-    system = moved([[a, b], [c, d]], flight, B, B_free, time, *pulls)
-    p, q, r = Q
-    candidate = pushing(((p, q), (q, r)), 1, share, level, multiplier)
-    assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 
 # Of three states, with denominators that differ, and nothing symmetric but Q.

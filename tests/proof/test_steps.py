@@ -80,29 +80,6 @@ Q3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8))
 WEIGHTS = (Fraction(2, 3), Fraction(3, 5))
 
 
-@pytest.mark.parametrize("acting", [(), (1,), (2, 0)])
-@pytest.mark.parametrize("roundings", [(), (4, 9), (0, 1)])
-@pytest.mark.parametrize("keeps", [Fraction(5, 7), Fraction(25, 49)])
-def test_every_form_by_hand(keeps, acting, roundings):
-    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
-    known = {"lost": Fraction(5, 4)}
-    known |= {f"rounding {i}": Fraction(tau, 4) for i, tau in enumerate(roundings, 1)}
-    for contact in (True, False):
-        system = crowded(Time.DISCRETE, lost=contact, pulled=False)
-        assert find_contradiction(system) is None
-        wanted = [
-            (move.where, inequality(move, quarters, quarters, keeps, known.get, weights))
-            for move in moves(system, lost=True, channels=acting, rounding=bool(roundings))
-            if "surface" not in move.where
-        ]
-        what = Acting(acting, weights, bool(roundings))
-        crossings = (5,) if contact else ()
-        found = forms_of_steps(system, what, (Q3, 2), keeps, crossings, roundings)
-        for (where, form), (true_where, true) in zip(found, wanted, strict=True):
-            assert where == true_where
-            assert is_in_other_units(form, true)
-
-
 @pytest.mark.parametrize("acting", [(), (2, 0)])
 def test_errors_of_a_flow_by_hand(acting):
     """No system with these makes sense, as nothing is rounded in between; the form is right."""

@@ -45,7 +45,6 @@ from tests.proof.systems import (
     bouncing_in_steps,
     bouncing_in_turns,
     crowded,
-    doubled_in_turns,
     family,
     genuine,
     losable,
@@ -54,7 +53,6 @@ from tests.proof.systems import (
     pushed,
     resets_between,
     shears,
-    slow_switching_in_steps,
 )
 from tests.proof.truth import edge_form, edges_at, holds, is_definite, is_in_other_units, moves
 from tests.support import broken, ends_soon
@@ -359,46 +357,8 @@ class TestAgainstTheDefinition:
             candidate = conewise(system, forms[0], rate, tuple(multipliers[:count]))
         assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
-    @settings(deadline=None)
-    @given(
-        st.lists(st.lists(st.integers(-5, 5), min_size=4, max_size=4), min_size=1, max_size=3),
-        st.lists(st.integers(-5, 9), min_size=6, max_size=6),
-        st.integers(-3, 3),
-        st.fractions("1/10", 3),
-        st.sampled_from(list(Time)),
-        st.booleans(),
-    )
-    def test_kept_contact(self, modes, entries, shift, rate, time, quartic):
-        matrices = ([row[:2], row[2:]] for row in modes)
-        system = family(*([[Fraction(e, 6) for e in r] for r in A] for A in matrices), time=time)
-        p, q, r, s, t, u = entries
-        evidence = common_quadratic(((p, q), (q, r)), 0, rate)
-        if quartic:
-            rows = ((p, q, r), (q, s, t), (r, t, u))
-            N = ((0, 0, shift), (0, -2 * shift, 0), (shift, 0, 0))
-            evidence = common_polynomial(2, rows, 0, (N,) * len(modes), rate)
-        assert (evidence.find_fault(system) is None) == holds(system, evidence)
-
-
-# x doubles, then loses a quarter three times: 2 (3/4)^3 = 0.84375, so 0.9584 a step.
-def four(*values: int, rate: Entry = "0.977") -> tuple[SwitchedSystem, FormsOnGraph]:
-    system = doubled_in_turns(len(values))
-    return system, in_turns(system, [((value,),) for value in values], 0, Fraction(rate))
-
 
 class TestTurns:
-    def test_known_answer_of_one_state(self):
-        system, evidence = four(64, 15, 25, 42)
-        assert agrees(system, evidence)
-        claim = evidence.claim(system)
-        assert claim.startswith("In rounds of 4 steps, every solution of x+ = A x, with any mode")
-        assert "deflection" not in claim
-
-    def test_a_round_that_grows_is_not_proved(self):
-        """2 (3/4)^2 is above one: without the step from the last form to the first, all holds."""
-        system, candidate = four(64, 15, 26, rate="0.99")
-        assert broken(system, candidate) == {"in mode m1, at step 2"}
-
     def test_what_is_not_rounded_is_said(self):
         system, evidence = genuine("periodic-quadratic, rounding")
         kept = tuple(m for m in evidence.multipliers if not m.fact.startswith("rounding"))
@@ -792,10 +752,6 @@ class TestAttacks:
 
 class TestRulesOfStays:
     """What rules of switching ask for besides, and sizes that do not hang."""
-
-    def test_a_longer_dwell_time_is_covered(self):
-        longer = replace(slow_switching_in_steps(), switching=Switching(Fraction(7)))
-        assert certify(longer, Method.MODE_QUADRATIC).verdict is Verdict.PROVED
 
     @pytest.mark.parametrize("dwell", [4096, 4097, 10**30])
     def test_hostile_dwell_times_rates_and_sizes_do_not_hang(self, dwell):

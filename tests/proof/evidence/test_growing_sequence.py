@@ -10,8 +10,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from flint import arb, fmpq
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import (
     CommonQuadraticStatus,
@@ -35,7 +33,6 @@ from nrs_design.proof.evidence.growth import monodromy
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict
 from tests.proof.rows import cases, check
@@ -54,7 +51,6 @@ from tests.proof.systems import (
     shears,
     sucking_in,
 )
-from tests.proof.truth import holds, is_stable_by_lyapunov
 from tests.support import ends_soon
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
@@ -150,19 +146,6 @@ def test_what_is_read_is_said_in_words_before_it_is_checked(system, evidence, fa
     expect(system, evidence, fault)
     with pytest.raises(error) if error else nullcontext():
         evidence.claim(system)
-
-
-@settings(deadline=None)
-@given(st.lists(st.integers(-6, 6), min_size=9, max_size=9), st.sampled_from(list(Time)))
-def test_against_the_lyapunov_equation(entries, time):
-    """Another algorithm, without a characteristic polynomial."""
-    rows = [[Fraction(e, 5) for e in entries[i : i + 3]] for i in (0, 3, 6)]
-    system = family(rows, time=time)
-    stable = is_stable_by_lyapunov(rows, time)
-    assert is_stable(system.modes[0].A, time) is stable
-    evidence = staying("m0")
-    assert (evidence.find_fault(system) is None) is not stable
-    assert holds(system, evidence) is not stable
 
 
 def test_a_sequence_is_read_as_it_is_written():

@@ -72,6 +72,26 @@ def test_the_form_of_a_stay_against_the_exponential(given, shown):
     assert (step.mode, step.source, step.target) == ("i", "i", "j")
 
 
+@pytest.mark.parametrize(("first", "shown"), [("0.9995", False), ("1.001", True)])
+def test_between_the_ends_of_a_stay_a_form_may_rise(first, shown):
+    """Of a rotation, ``F - v v'`` with v = (cos t, sin t) is least at t = pi, in the middle.
+
+    Both ends, 0.05 from there, would pass in both cases: what is between is of second order.
+    """
+    turn = RationalMatrix.from_rows([[0, 1], [-1, 0]])
+    edge = Edge(Mode("i", turn), Mode("j", turn), None)
+    middle, half, over = Fraction(355, 113), Fraction(1, 20), 10**4
+    before = ((int(Fraction(first) * over), 0), (0, 100 * over))
+    after = ((over, 0), (0, 0))
+    for time in (middle - half, middle + half):
+        end = EnclosedStep("", edge, time, time)
+        assert is_positive_definite(end.form(before, after, Fraction(0)))
+    step = EnclosedStep("", edge, middle - half, middle + half)
+    form = step.form(before, after, Fraction(0))
+    assert len(form) == 4
+    assert is_positive_definite(form) is shown
+
+
 def test_forms_of_steps_by_hand():
     """``rho^2k Q0 - (G A^k)^2 Q1`` for A = 1/3, G = 2/5, rho = 3/4, over ``(5 3^k 4^k)^2``."""
     resets = resets_between(("m0", "m1", [["2/5"]]))

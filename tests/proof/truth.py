@@ -17,6 +17,7 @@ from flint import fmpq, fmpq_mat
 from scipy.linalg import expm
 
 from nrs_design.proof.channels import Channel
+from nrs_design.proof.constant import system_at
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -28,6 +29,7 @@ from nrs_design.proof.evidence import (
     OffsetEllipsoid,
     SaturatedEllipsoid,
 )
+from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock
@@ -595,14 +597,6 @@ def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> boo
     return len(set(names)) == len(names) and is_definite(total)
 
 
-def weights(shares: Sequence[Fraction]) -> list[Fraction]:
-    """Return the weight of every corner of a box, the last parameter turning fastest."""
-    found = [Fraction(1)]
-    for share in shares:
-        found = [w * s for w in found for s in (1 - share, share)]
-    return found
-
-
 def _constants_quadratic(system: SwitchedSystem, item: ConstantsQuadratic) -> bool:
     """Sample the weights; with each of them the decrease is that of a common quadratic."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
@@ -824,42 +818,10 @@ def goes_on(clock: Clock, names: Sequence[str]) -> bool:
 
 
 def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:
-    """It must hold for the averages of the ends, under the rules that both ends share."""
-    modes = {mode.name: mode.A.fractions() for mode in system.modes}
-    names = {}
-    for corners in system.switching.fixed_ends:
-        parts = zip(*(corner.split("/") for corner in corners), strict=False)
-        same = [labels[0] for labels in parts if len(set(labels)) == 1]
-        names["/".join(same) or " to ".join(corners)] = corners
-    averages = tuple(
-        Mode(
-            name,
-            RationalMatrix.from_rows(
-                combine(*zip(weights(item.shares), (modes[c] for c in corners), strict=True))
-            ),
-        )
-        for name, corners in names.items()
-    )
-    part = replace(item, shares=())
-    if len(item.steps) > 1 and not _obeys(system, part, names):
+    """The system at a value, which is told apart in test_constant.py, is one without parameters."""
+    if not all(0 <= share <= 1 for share in item.shares):
         return False
-    inside = all(0 <= share <= 1 for share in item.shares)
-    return inside and holds(replace(system, modes=averages), part)
-
-
-def _obeys(system: SwitchedSystem, part: GrowingSequence, names: Mapping[str, tuple]) -> bool:
-    allowed = system.switching.transitions
-    steps = [names[name] for name, _ in part.steps]
-    switches = [
-        pair
-        for a, b in zip(steps, steps[1:] + steps[:1], strict=True)
-        if a != b
-        for pair in zip(a, b, strict=True)
-    ]
-    if part.doublings is None:
-        return not system.switching.dwell_time and allowed is None
-    long_enough = all(dwell >= system.switching.dwell_time for _, dwell in part.steps)
-    return long_enough and (allowed is None or set(switches) <= set(allowed))
+    return holds(system_at(system, item.shares), replace(item, shares=()))
 
 
 def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
@@ -873,19 +835,9 @@ def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
                 return False
     covered = {k for k, _ in item.parts}
     complete = covered == set(range(len(item.blocks))) or str(item.shows) != "stability"
-    return complete and all(holds(restrict(system, item.blocks[k]), part) for k, part in item.parts)
-
-
-def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
-    """Return the family of one diagonal block."""
-    modes = tuple(
-        Mode(
-            mode.name,
-            RationalMatrix.from_rows([[mode.A.fractions()[i][j] for j in block] for i in block]),
-        )
-        for mode in system.modes
+    return complete and all(
+        holds(diagonal_block(system, item.blocks[k]), part) for k, part in item.parts
     )
-    return replace(system, states=tuple(system.states[i] for i in block), modes=modes)
 
 
 _ORACLES = {

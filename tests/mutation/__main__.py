@@ -27,6 +27,7 @@ PACKAGE = ROOT / "nrs_design"
 PROOF = PACKAGE / "proof"
 TESTS = ROOT / "tests" / "proof"
 KINDS = TESTS / "evidence"
+ROWS = TESTS / "test_rows.py"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
 SHARED = {"abstract", "fields", "__init__"}
@@ -37,17 +38,22 @@ EXAMPLES_OF = {"graph": "quadratic or polynomial"}
 # What decides for several kinds is held by their tests, too.
 BESIDE = {
     "steps": (
+        ROWS,
         KINDS / "test_graph.py",
         KINDS / "test_invariant_ellipsoid.py",
         TESTS / "test_offset.py",
         TESTS / "test_stays.py",
     ),
-    "stays": (KINDS / "test_graph.py",),
+    "stays": (ROWS, KINDS / "test_graph.py"),
+    "__init__": (KINDS / "test_tampering.py",),
     "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
     "fields": (KINDS / "test_tampering.py",),
-    "enclosure": (KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
-    "saturation": (KINDS / "test_saturated_ellipsoid.py",),
-    "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
+    "enclosure": (ROWS, KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
+    "saturation": (
+        ROWS,
+        KINDS / "test_saturated_ellipsoid.py",
+    ),
+    "switching": (ROWS, TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
     "system": (TESTS / "test_clock.py", TESTS / "test_contact.py"),
 }
 # What decides beside the proof: modes that enclose too little prove too much, and what has a veto.
@@ -217,10 +223,10 @@ def own_tests(path: Path) -> list[str]:
     path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:
-        own = mirror if mirror.exists() else KINDS / "test_tampering.py"
+        own = mirror if mirror.exists() else ROWS
         return [str(own), *map(str, BESIDE.get(path.stem, ()))]
     shared = ("test_facts_of_the_kinds", "test_what_is_spread_over_equal_modes_holds_for_all")
-    common = [f"{KINDS}/test_abstract.py::{test}" for test in shared]
+    common = [str(ROWS), *(f"{KINDS}/test_abstract.py::{test}" for test in shared)]
     kind = EXAMPLES_OF.get(path.stem, path.stem.replace("_", "-"))
     return [str(mirror), *common, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
 

@@ -10,7 +10,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     companion,
     family,
@@ -75,11 +74,6 @@ def test_a_constant_stiffness_is_stable_however_large(kbar):
     assert 0 < found.evidence.rate <= Fraction(1, 2)
     assert holds(found.system, found.evidence)
     assert certify(oscillator(kbar)).verdict is Verdict.REFUTED
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 @pytest.mark.parametrize("kind", KINDS)

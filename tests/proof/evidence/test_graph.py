@@ -35,7 +35,6 @@ from tests.proof.graphs import (
     one_form,
     scalars,
 )
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     LAGGING,
     Entry,
@@ -86,11 +85,6 @@ def with_form(evidence: FormsOnGraph, k: int, form) -> FormsOnGraph:
     nodes = list(evidence.nodes)
     nodes[k] = Node(nodes[k].place, form)
     return replace(evidence, nodes=tuple(nodes))
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 class TestPolynomials:

@@ -35,7 +35,6 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     bouncing_in_steps,
     branicky,
@@ -74,11 +73,6 @@ GROWING = family([[1, 1], [0, 1]], [[1, 0], [1, 1]], time=STEPS)
 NOT_SHOWN = "the enclosure of the monodromy matrix does not show growth"
 HUNDRED = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
 LONGEST = signal(*[(0, 1), (1, 1)] * 512, doublings=0)
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 def test_a_spectral_radius_of_one_or_less_is_no_growth_however_often_it_is_squared():

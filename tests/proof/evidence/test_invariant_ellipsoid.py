@@ -15,7 +15,6 @@ from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     Entry,
     bouncing,
@@ -49,11 +48,6 @@ GENUINE = (
     (pushed(replace(bouncing(), contact=None)), BOUNCE),
     (pushed(bouncing_in_steps()), STEPS),
 )
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 @pytest.mark.parametrize(("system", "evidence"), GENUINE)

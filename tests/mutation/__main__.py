@@ -234,10 +234,9 @@ def own_tests(path: Path) -> list[str]:
     if path.parent == PROOF or path.stem in SHARED:
         own = mirror if mirror.exists() else ROWS
         return [str(own), *map(str, BESIDE.get(path.stem, ()))]
-    shared = ("test_facts_of_the_kinds", "test_what_is_spread_over_equal_modes_holds_for_all")
-    common = [str(ROWS), *(f"{KINDS}/test_abstract.py::{test}" for test in shared)]
+    of_all = (ROWS, KINDS / "test_abstract.py", KINDS / "test_tampering.py")
     kind = EXAMPLES_OF.get(path.stem, path.stem.replace("_", "-"))
-    return [str(mirror), *common, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
+    return [str(mirror), *map(str, of_all), "-k", f"not tampering or {kind}"]
 
 
 if __name__ == "__main__":

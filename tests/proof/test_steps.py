@@ -113,7 +113,7 @@ def test_a_map_and_a_flow_by_hand():
     step = map_step("", "m0", ("a", "b"), A, 7)
     form = step.form(F, G, keeps)
     assert is_in_other_units(form, combine((keeps, F), (-1, moved)))
-    assert (step.source, step.target, step.facts) == ("a", "b", ())
+    assert (step.source, step.target, step.facts, step.over) == ("a", "b", (), 1)
     half = times(F, exact)
     flow = flow_step("", "m0", "a", A).form(F, F, keeps)
     wanted = combine((-1, half), (-1, transpose(half)), (-keeps, F))

@@ -17,15 +17,11 @@ BENCHMARKS = (
     "cold_pair",
     "verify_shipped",
     "many_modes",
-    "tight_margins",
-    "exact_check",
     "random_families",
     "gradient_share",
     "beyond_quadratic",
     "impedance_optimum",
     "tissue_fits",
-    "robot_dynamics",
-    "scaling",
     "bounded_runs",
     "instruction_counts",
     "scenario_runs",
@@ -106,11 +102,9 @@ def _cells(result: Result) -> tuple[str, ...]:
     if isinstance(result, Finding):
         return result.work, result.result, result.aim, MET[result.met], f"{result.seconds:.3g}"
     r = result
-    stopped = f"> {r.at_least_seconds:.0f}" if r.peer_seconds is None else ""
-    peer = stopped or f"{r.peer_seconds:.3g}"
-    ratio = f"{'> ' if stopped else ''}{r.ratio:.3g}"
+    peer, ours, ratio = (f"{number:.3g}" for number in (r.peer_seconds, r.our_seconds, r.ratio))
     aim = "-" if r.target is None else f"{r.target:.3g}"
-    return r.work, r.peer, peer, f"{r.our_seconds:.3g}", ratio, aim, MET[r.met], r.note
+    return r.work, r.peer, peer, ours, ratio, aim, MET[r.met], r.note
 
 
 if __name__ == "__main__":

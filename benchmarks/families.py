@@ -26,23 +26,6 @@ def stable_family(n: int, m: int, seed: int) -> Matrices:
     return np.asarray(np.round(np.linalg.solve(Q, _skew(rng, m, n) - S / 2), 3))
 
 
-def narrow_family(n: int, m: int, seed: int, margin: float) -> Matrices:
-    """Return m modes whose decrease in the shared Q = I is barely more than `margin` somewhere.
-
-    In each mode S is nearly singular in half of the directions; few modes already pin Q down.
-    """
-    rng = np.random.default_rng(seed)
-    S = _gram(rng, m, n, n // 2) + margin * np.eye(n)
-    return np.asarray(np.round(_skew(rng, m, n) - S / 2, 4))
-
-
-def crowded_family(n: int, m: int, seed: int, spread: float) -> Matrices:
-    """Return m modes ``spread N - I`` with N random: many of them bind at the best Q."""
-    rng = np.random.default_rng(seed)
-    N = rng.normal(size=(m, n, n)) / np.sqrt(n)
-    return np.asarray(np.round(spread * N - np.eye(n), 4))
-
-
 def hurwitz_family(rng: np.random.Generator, n: int, m: int) -> Matrices:
     """Return m random modes with stability margins from 0.05 to 2, in four decimals."""
     A = rng.normal(size=(m, n, n))

@@ -5,9 +5,7 @@ Of order 20 a general solver slows down, or calls its answer inaccurate.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from benchmarks.families import Matrices, stable_family, to_system
+from benchmarks.families import stable_family, to_system
 from benchmarks.measure import Comparison, Size, prove, time_side_by_side
 from benchmarks.peers import Solution, solve_all_at_once
 from nrs_design.search.certification import Certification
@@ -24,18 +22,11 @@ def run(size: Size) -> tuple[Comparison, ...]:
 
 
 def _compare(n: int, m: int, target: float | None, repeats: int) -> Comparison:
-    theirs, ours, note, *_ = compare_at_once(stable_family(n, m, seed=n * m), DECIMALS, repeats)
-    return Comparison(f"n = {n}, m = {m}", "cvxpy, all modes", theirs, ours, target, note)
-
-
-def compare_at_once(
-    matrices: Matrices, decimals: int, repeats: int, *others: Callable[[], object]
-) -> tuple[float, float, str, list[float]]:
-    """Return the seconds of both sides, what came out, and the seconds of others, all in turn."""
-    system = to_system(matrices, decimals)
-    prove(to_system(matrices[:2], decimals))  # Imports are not what is measured.
-    (theirs, ours, *rest), (solution, found, *_) = time_side_by_side(
-        repeats, lambda: solve_all_at_once(matrices), lambda: prove(system), *others
+    matrices = stable_family(n, m, seed=n * m)
+    system = to_system(matrices, DECIMALS)
+    prove(to_system(matrices[:2], DECIMALS))  # Imports are not what is measured.
+    (theirs, ours), (solution, found) = time_side_by_side(
+        repeats, lambda: solve_all_at_once(matrices), lambda: prove(system)
     )
     assert isinstance(solution, Solution)
     assert isinstance(found, Certification)
@@ -43,4 +34,4 @@ def compare_at_once(
         f"t* = {solution.t:.3g}; peer: {solution.status} in floating point; "
         f"ours: {found.verdict}, all {len(matrices)} modes checked exactly"
     )
-    return theirs, ours, note, rest
+    return Comparison(f"n = {n}, m = {m}", "cvxpy, all modes", theirs, ours, target, note)

@@ -22,7 +22,7 @@ from nrs_design.search.method import Method
 
 T = TypeVar("T")
 LAUNCHER = Path(__file__).with_name("launcher.py")
-LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")
+LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy")
 
 
 @dataclass(frozen=True)
@@ -31,16 +31,15 @@ class Comparison:
 
     work: str
     peer: str
-    peer_seconds: float | None  # Median; None if it was stopped after `at_least_seconds`
+    peer_seconds: float  # Median
     our_seconds: float  # Median
     target: float | None  # Least ratio peer/ours; None if the ratio is only reported
     note: str = ""
-    at_least_seconds: float | None = None
 
     @property
     def ratio(self) -> float:
-        """How many times as long the peer takes (at least so many, if it was stopped)."""
-        return (self.peer_seconds or self.at_least_seconds or float("nan")) / self.our_seconds
+        """How many times as long the peer takes."""
+        return self.peer_seconds / self.our_seconds
 
     @property
     def met(self) -> bool | None:

@@ -19,16 +19,15 @@ from unittest.mock import patch
 
 import pytest
 import typer
-from flint import fmpq, fmpq_mat
 
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.cli import main
-from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.abstract import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Switching
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import LoadedSpec, parse_exact, read_spec
+from nrs_design.spec import LoadedSpec, read_spec
 from tests.proof import truth
 
 ROOT = Path(__file__).parents[1]
@@ -47,6 +46,7 @@ PRINT_ERROR = ROOT / "docs" / "examples" / "thesis-print-error.nrs.yaml"
 # Processor seconds: several times what a slow machine needs, a small part of what a hang takes.
 SOON = 20.0
 Entry = int | str | Fraction
+Rows = Sequence[Sequence[Entry]]
 # Dayawansa and Martin 1999, a = 11.2: stable, but only a polynomial of about degree 40 shows it.
 HARD = ([[-1, -1], [1, -1]], [[-1, "-11.2"], ["5/56", -1]])
 
@@ -70,27 +70,32 @@ def ends_soon() -> Iterator[None]:
     assert process_time() - start < SOON
 
 
-def exact(rows: Sequence[Sequence[Entry]]) -> list[list[Fraction]]:
+def matrix(rows: Rows) -> RationalMatrix:
     """Read a matrix of integers, fractions or exact decimals."""
-    return [[parse_exact(e) if isinstance(e, str) else Fraction(e) for e in row] for row in rows]
+    return RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in rows])
 
 
-def matrix(rows: Sequence[Sequence[Entry]]) -> RationalMatrix:
-    return RationalMatrix.from_rows(exact(rows))
+def family(
+    *matrices: Rows,
+    time: Time = Time.CONTINUOUS,
+    switching: Switching = ARBITRARY,
+    names: Sequence[str] | None = None,
+) -> SwitchedSystem:
+    """Make a system with modes m0, m1, ... of any sizes."""
+    labels = names or [f"m{i}" for i in range(len(matrices))]
+    modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
+    states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
+    return SwitchedSystem(
+        name="family", time=time, states=states, modes=modes, assumptions=(), switching=switching
+    )
 
 
-def family(*matrices: Sequence[Sequence[Entry]], time: Time = Time.CONTINUOUS) -> SwitchedSystem:
-    """Make a switched system with modes m0, m1, ..."""
-    modes = tuple(Mode(f"m{i}", matrix(rows)) for i, rows in enumerate(matrices))
-    states = tuple(f"x{i + 1}" for i in range(len(matrices[0])))
-    return SwitchedSystem(name="family", time=time, states=states, modes=modes, assumptions=())
-
-
-def dayawansa_martin(a: Entry, scale: Entry = 1) -> SwitchedSystem:
-    """Pair with a common quadratic Lyapunov function iff a < 3 + 2 sqrt(2)."""
-    value, factor = exact([[a, scale]])[0]
-    pair = [[[-1, -1], [1, -1]], [[-1, -value], [1 / value, -1]]]
-    return family(*([[factor * e for e in row] for row in A] for A in pair))
+def dayawansa_martin(
+    a: Entry, scale: Entry = 1, switching: Switching = ARBITRARY
+) -> SwitchedSystem:
+    """Quadratic iff a < 5.8284..., stable iff a < 11.2608... (Dayawansa and Martin 1999)."""
+    a, c = Fraction(a), Fraction(scale)
+    return family([[-c, -c], [c, -c]], [[-c, -c * a], [c / a, -c]], switching=switching)
 
 
 def write_spec(
@@ -187,54 +192,8 @@ def number_in(text: str) -> Fraction:
     return Fraction(text) if " - " not in text else 1 - Fraction(text.removeprefix("1 - "))
 
 
-def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
-    """Oracle: the definition of a kind of evidence.
-
-    The two kinds that most systems end with are decided in fractions and by other algorithms than
-    those of the package; the others are left to `tests.proof.truth`.
-    """
-    discrete = system.time is Time.DISCRETE
-    plain = isinstance(evidence, FormsOnGraph) and len(evidence.nodes) == 1
-    if plain:
-        plain = evidence.degree == 1 and not evidence.multipliers and evidence.stays is None
-    is_mode = evidence.kind == "growing-sequence" and evidence.names_unstable_mode
-    if not (plain or is_mode):
-        return truth.holds(system, evidence)
-    if is_mode:
-        ((name, _),) = evidence.steps
-        (mode,) = [mode for mode in system.modes if mode.name == name]
-        may_stay = truth.bounds_of(system, name)[1] is None
-        return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
-    Q, rate = exact(evidence.nodes[0].form), evidence.rate
-    if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):
-        return False
-    return all(
-        is_definite_by_ldl(_decrease(mode.A.fractions(), Q, rate, discrete))
-        for mode in system.modes
-    )
-
-
-def _decrease(
-    A: list[list[Fraction]], Q: list[list[Fraction]], rate: Fraction, discrete: bool
-) -> list[list[Fraction]]:
-    n = len(A)
-    QA = _product(Q, A)
-    if not discrete:
-        return [[-QA[i][j] - QA[j][i] - 2 * rate * Q[i][j] for j in range(n)] for i in range(n)]
-    AQA = _product([list(column) for column in zip(*A, strict=True)], QA)
-    return [[rate**2 * Q[i][j] - AQA[i][j] for j in range(n)] for i in range(n)]
-
-
-def is_definite_by_ldl(M: Sequence[Sequence[Entry]]) -> bool:
-    """Oracle: pivots of Gaussian elimination in fractions."""
-    rows = [[Fraction(e) for e in row] for row in M]
-    for k, pivot_row in enumerate(rows):
-        if pivot_row[k] <= 0:
-            return False
-        for i in range(k + 1, len(rows)):
-            factor = rows[i][k] / pivot_row[k]
-            rows[i] = [a - factor * b for a, b in zip(rows[i], pivot_row, strict=True)]
-    return True
+# Oracle: the definition of a kind of evidence.
+holds = truth.holds
 
 
 def broken(system: SwitchedSystem, evidence: AbstractFunction) -> set[str]:
@@ -242,51 +201,5 @@ def broken(system: SwitchedSystem, evidence: AbstractFunction) -> set[str]:
     return {
         failure.partition("rate ")[2]
         for failure, form in evidence.forms(system)
-        if not is_definite_by_ldl(form)
+        if not truth.is_definite(form)
     }
-
-
-def is_stable_by_lyapunov(A: Sequence[Sequence[Entry]], *, discrete: bool = False) -> bool:
-    """Oracle: A is Hurwitz iff ``A'P + PA = -I`` (Schur iff ``A'PA - P = -I``) has P > 0.
-
-    Solved exactly; no characteristic polynomial is involved.
-    """
-    n = len(A)
-    pairs = [(i, j) for i in range(n) for j in range(i, n)]
-    position = {pair: k for k, pair in enumerate(pairs)}
-    columns = [_image(A, i, j, discrete) for i, j in pairs]
-    left = fmpq_mat(len(pairs), len(pairs))
-    right = fmpq_mat(len(pairs), 1)
-    for row, (i, j) in enumerate(pairs):
-        right[row, 0] = fmpq(-int(i == j))
-        for column, image in enumerate(columns):
-            left[row, column] = fmpq(image[i][j].numerator, image[i][j].denominator)
-    if left.det() == 0:
-        return False
-    P = left.solve(right)
-    values = [Fraction(int(P[k, 0].p), int(P[k, 0].q)) for k in range(len(pairs))]
-    return is_definite_by_ldl(
-        [[values[position[min(i, j), max(i, j)]] for j in range(n)] for i in range(n)]
-    )
-
-
-def _image(A: Sequence[Sequence[Entry]], i: int, j: int, discrete: bool) -> list[list[Fraction]]:
-    """Apply the Lyapunov (or Stein) operator to the symmetric unit matrix at (i, j)."""
-    n = len(A)
-    E = [[Fraction(int((r, c) in {(i, j), (j, i)})) for c in range(n)] for r in range(n)]
-    F = [[Fraction(e) for e in row] for row in A]
-    EA = _product(E, F)
-    if discrete:
-        image = _product([list(column) for column in zip(*F, strict=True)], EA)
-        return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(image, E, strict=True)]
-    return [[EA[r][c] + EA[c][r] for c in range(n)] for r in range(n)]
-
-
-def _product(X: list[list[Fraction]], Y: list[list[Fraction]]) -> list[list[Fraction]]:
-    return [
-        [
-            sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0))
-            for column in zip(*Y, strict=False)
-        ]
-        for row in X
-    ]

@@ -77,19 +77,3 @@ def test_matplotlib_has_one_door():
     assert {source for source, _ in past} == DOORS
     text = (ROOT / "nrs_design/control_library.py").read_text(encoding="utf-8")
     assert text.index("import plotting") < text.index("import control")
-
-
-@pytest.mark.slow
-def test_no_other_library_brings_matplotlib_along():
-    used = {item.target.split(".")[0] for item in imports() if not item.typing_only}
-    others = sorted(used - BEHIND - sys.stdlib_module_names - {"nrs_design"})
-    assert {"numpy", "scipy", "clarabel"} <= {*others}
-    load = (
-        "import importlib, sys\n"
-        f"for name in {others!r}:\n"
-        "    try: importlib.import_module(name)\n"
-        "    except ImportError: pass\n"
-        "print('matplotlib' in sys.modules)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", load], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"

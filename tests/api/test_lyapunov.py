@@ -15,8 +15,8 @@ from nrs_design.api.lyapunov import (
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from tests.proof.truth import decrease, is_positive_multiple
-from tests.support import is_definite_by_ldl, matrix
+from tests.proof.truth import decrease, is_definite, is_positive_multiple
+from tests.support import matrix
 
 F = Fraction
 entries = st.integers(-6, 6)
@@ -141,7 +141,7 @@ def test_what_is_no_question(given_modes, P, said):
 
 @given(symmetric)
 def test_a_vector_is_found_exactly_where_a_matrix_is_not_definite(M):
-    if is_definite_by_ldl(M):
+    if is_definite(M):
         with pytest.raises(ValueError, match="positive definite"):
             indefinite_vector(M)
         return

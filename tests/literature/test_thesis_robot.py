@@ -14,12 +14,6 @@ from tests.proof.graphs import shape_of
 from .known import known, robot, settle
 
 
-@pytest.mark.parametrize("coordinates", ["deflection", "force"])
-@pytest.mark.parametrize("name", ["withdrawal-insertion", "tissue-tool"])
-def test_the_switched_designs_of_the_thesis_are_proved(name, coordinates):
-    settle(name, coordinates=coordinates)
-
-
 def test_stiff_hand_with_virtual_mass_is_refuted_by_one_mode():
     assert settle("hand-with-mass").evidence.steps[0][0] == "k=90.432 Bt=1.04"
 

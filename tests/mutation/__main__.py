@@ -27,6 +27,7 @@ PACKAGE = ROOT / "nrs_design"
 PROOF = PACKAGE / "proof"
 TESTS = ROOT / "tests" / "proof"
 KINDS = TESTS / "evidence"
+ROWS = TESTS / "test_rows.py"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
 SHARED = {"abstract", "fields", "__init__"}
@@ -37,17 +38,22 @@ EXAMPLES_OF = {"graph": "quadratic or polynomial"}
 # What decides for several kinds is held by their tests, too.
 BESIDE = {
     "steps": (
+        ROWS,
         KINDS / "test_graph.py",
         KINDS / "test_invariant_ellipsoid.py",
         TESTS / "test_offset.py",
         TESTS / "test_stays.py",
     ),
-    "stays": (KINDS / "test_graph.py",),
+    "stays": (ROWS, KINDS / "test_graph.py"),
+    "__init__": (KINDS / "test_tampering.py",),
     "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
     "fields": (KINDS / "test_tampering.py",),
-    "enclosure": (KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
-    "saturation": (KINDS / "test_saturated_ellipsoid.py",),
-    "switching": (TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
+    "enclosure": (ROWS, KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
+    "saturation": (
+        ROWS,
+        KINDS / "test_saturated_ellipsoid.py",
+    ),
+    "switching": (ROWS, TESTS / "test_clock.py", KINDS / "test_growing_sequence.py"),
     "system": (TESTS / "test_clock.py", TESTS / "test_contact.py"),
 }
 # What decides beside the proof: modes that enclose too little prove too much, and what has a veto.
@@ -59,7 +65,6 @@ ELSEWHERE = {
         "certificates/second_opinion": ("certificates/test_second_opinion.py",),
         "controllers/taylor": ("controllers/test_taylor.py",),
         "design/largest_ratio": ("design/test_largest_ratio.py",),
-        "design/least_cost": ("design/test_least_cost.py",),
         "spec/power": ("spec/test_power.py",),
     }.items()
 }
@@ -75,7 +80,7 @@ hypothesis.settings.register_profile(
     deadline=None,
     phases=(hypothesis.Phase.explicit, hypothesis.Phase.generate),
 )
-OPTIONS = ("-x", "-s", "-m", "not slow", "--hypothesis-profile", "mutation")
+OPTIONS = ("-x", "-s", "--hypothesis-profile", "mutation")
 # Nothing is reported but by us, and hypothesis is loaded before pytest could rewrite its asserts.
 QUIET = ("-qq", "--no-header", "--no-summary", "-p", "no:cacheprovider", "-p", "no:xdist")
 QUIET += ("-W", "ignore::pytest.PytestAssertRewriteWarning")
@@ -96,15 +101,17 @@ class Examination:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Take the place of the one run of the tests."""
-        # So that no process copies what is there already, only to look through it.
-        gc.freeze()
         # In memory that the processes share: what each test took, and which one is run.
         self.took = RawArray("d", [60.0] * len(session.items))
         self.running_test = RawValue("i")
         self.order = list(range(len(session.items)))
-        if os.waitpid(self.start(session, None), 0)[1]:
+        # In this process, so that what a search has found is there for all mutants.
+        if self.run(session, None):
             raise session.Failed(f"{self.name}: its tests fail without any change")
+        signal.setitimer(signal.ITIMER_PROF, 0)
         self.order.sort(key=self.took.__getitem__)
+        # So that no process copies what is there already, only to look through it.
+        gc.freeze()
         for mutant in self.candidates:
             if len(self.running) == len(os.sched_getaffinity(0)):
                 self.wait()
@@ -126,11 +133,14 @@ class Examination:
         self.order.remove(killer)
         self.order.insert(0, killer)
 
-    def start(self, session: pytest.Session, mutant: Mutant | None) -> int:
-        """Begin the run for a mutant, or for the module as it is."""
+    def start(self, session: pytest.Session, mutant: Mutant) -> int:
+        """Begin the run for a mutant."""
         if pid := os.fork():
             return pid
-        status = 1
+        status, silence = 1, os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         try:
             status = self.run(session, mutant)
         finally:
@@ -138,13 +148,10 @@ class Examination:
 
     def run(self, session: pytest.Session, mutant: Mutant | None) -> int:
         """Run the tests up to the first failure."""
-        silence = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(silence, 1)
-        os.dup2(silence, 2)
-        resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         if mutant:
             graft(importlib.import_module(self.name), mutant.compile(self.path))
+            forget()
         items = [*(session.items[k] for k in self.order), None]
         for k, (item, following) in zip(self.order, pairwise(items), strict=True):
             self.running_test.value, begin = k, process_time()
@@ -155,6 +162,14 @@ class Examination:
             if not mutant:
                 self.took[k] = process_time() - begin
         return 0
+
+
+def forget() -> None:
+    """Clear what functions of the proof keep of what they have computed."""
+    for name in [name for name in sys.modules if name.startswith("nrs_design.proof.")]:
+        for thing in vars(sys.modules[name]).values():
+            if hasattr(thing, "cache_clear"):
+                thing.cache_clear()
 
 
 def main(names: list[str]) -> int:
@@ -217,12 +232,11 @@ def own_tests(path: Path) -> list[str]:
     path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:
-        own = mirror if mirror.exists() else KINDS / "test_tampering.py"
+        own = mirror if mirror.exists() else ROWS
         return [str(own), *map(str, BESIDE.get(path.stem, ()))]
-    shared = ("test_facts_of_the_kinds", "test_what_is_spread_over_equal_modes_holds_for_all")
-    common = [f"{KINDS}/test_abstract.py::{test}" for test in shared]
+    of_all = (ROWS, KINDS / "test_abstract.py", KINDS / "test_tampering.py")
     kind = EXAMPLES_OF.get(path.stem, path.stem.replace("_", "-"))
-    return [str(mirror), *common, f"{KINDS}/test_tampering.py", "-k", f"not tampering or {kind}"]
+    return [str(mirror), *map(str, of_all), "-k", f"not tampering or {kind}"]
 
 
 if __name__ == "__main__":

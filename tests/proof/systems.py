@@ -26,34 +26,7 @@ from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.method import Method
 from nrs_design.work import Allowance
 from tests.proof.graphs import shape_of
-
-Entry = int | str | Fraction
-Rows = Sequence[Sequence[Entry]]
-
-
-def matrix(rows: Rows) -> RationalMatrix:
-    return RationalMatrix.from_rows([[Fraction(entry) for entry in row] for row in rows])
-
-
-def family(
-    *matrices: Rows,
-    time: Time = Time.CONTINUOUS,
-    switching: Switching = ARBITRARY,
-    names: Sequence[str] | None = None,
-) -> SwitchedSystem:
-    """Make a system with modes m0, m1, ... of any sizes."""
-    labels = names or [f"m{i}" for i in range(len(matrices))]
-    modes = tuple(Mode(label, matrix(A)) for label, A in zip(labels, matrices, strict=True))
-    states = tuple(f"x{i + 1}" for i in range(max(len(A) for A in matrices)))
-    return SwitchedSystem(
-        name="family", time=time, states=states, modes=modes, assumptions=(), switching=switching
-    )
-
-
-def dayawansa_martin(a: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
-    """Quadratic iff a < 5.8284..., stable iff a < 11.2608... (Dayawansa and Martin 1999)."""
-    a = Fraction(a)
-    return family([[-1, -1], [1, -1]], [[-1, -a], [1 / a, -1]], switching=switching)
+from tests.support import Entry, Rows, dayawansa_martin, family, matrix
 
 
 def oscillator(kbar: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
@@ -528,7 +501,9 @@ SYSTEMS = {
     "growing-sequence, period": branicky,
     "growing-sequence, steps": lambda: golden("0.6181"),
     "mode-quadratic, dwell": lambda: geromel_colaneri("2.76"),
-    "mode-quadratic, one way": lambda: dayawansa_martin(12, Switching(transitions=(("m0", "m1"),))),
+    "mode-quadratic, one way": lambda: dayawansa_martin(
+        12, switching=Switching(transitions=(("m0", "m1"),))
+    ),
     "mode-quadratic, rectangular": rectangular,
     "mode-quadratic, discrete": lambda: ando_shih("0.99"),
     "mode-quadratic, steps": slow_switching_in_steps,

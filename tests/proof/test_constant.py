@@ -53,25 +53,6 @@ def test_matrices_are_those_of_the_spec_at_that_value(share):
     assert found.switching == ARBITRARY
 
 
-def test_the_parameter_is_known_by_name():
-    parameter = FixedParameter("m", Fraction(1, 2), Fraction(2))
-    assert assembled().switching.fixed_parameters == (parameter,)
-    nominal = assemble_from_text(parse_spec(TEXT.replace("RULES", "arbitrary")), {}, Fraction(0))
-    assert nominal.switching == ARBITRARY
-
-
-def test_allowed_switches_stay_allowed():
-    found = system_at(assembled("{transitions: [[a, b], [b, c]]}"), (Fraction(1, 2),))
-    # Corners of one mode follow each other freely.
-    assert set(found.switching.transitions) == {
-        ("a/k-min", "a/k-max"),
-        ("a/k-max", "a/k-min"),
-        ("a/k-min", "b"),
-        ("a/k-max", "b"),
-        ("b", "c"),
-    }
-
-
 def test_a_switch_that_one_end_forbids_is_forbidden():
     system = assembled()
     low, high = system.switching.fixed_ends[:2]

@@ -5,46 +5,24 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 import nrs_design.proof
+from tests.test_structure import imports
 
 ROOT = Path(nrs_design.proof.__file__).parent
 DOCS = Path(__file__).parents[2] / "docs" / "certificates"
 FILES = sorted(path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*.py"))
-ON_FLINT = {"enclosure.py"}
 
 
-def imports(node):
-    for item in ast.walk(node):
-        if isinstance(item, ast.Import):
-            yield from (alias.name for alias in item.names)
-        if isinstance(item, ast.ImportFrom):
-            assert item.level == 0
-            yield item.module
-
-
-def outside_functions(node):
-    for item in ast.iter_child_nodes(node):
-        if isinstance(item, ast.FunctionDef):
-            continue
-        if isinstance(item, ast.Import | ast.ImportFrom):
-            yield item
-        yield from outside_functions(item)
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_imports(name):
-    tree = ast.parse((ROOT / name).read_text(encoding="utf-8"))
+def test_imports():
     foreign = {
-        module
-        for module in imports(tree)
-        if module.split(".")[0] not in sys.stdlib_module_names
-        and not module.startswith("nrs_design.proof.")
+        (item.source, item.target)
+        for item in imports()
+        if item.source.startswith("nrs_design.proof")
+        and item.target.split(".")[0] not in sys.stdlib_module_names
+        and not item.target.startswith("nrs_design.proof.")
     }
-    assert foreign <= ({"flint"} if name in ON_FLINT else set())
-    # Inside functions only, so that nobody pays for it who needs no enclosure.
-    assert "flint" not in {module for item in outside_functions(tree) for module in imports(item)}
+    # Inside functions only, as is seen below: nobody pays for it who needs no enclosure.
+    assert foreign == {("nrs_design.proof.enclosure", "flint")}
 
 
 def test_the_whole_proof_loads_nothing_else():

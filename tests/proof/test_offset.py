@@ -141,3 +141,10 @@ def test_products_of_a_row_of_the_mode_have_one_multiplier_for_all_modes():
         for name, first, other in step.products:
             assert (list(first) == row) is (name in shared)
             assert list(other) != row
+
+
+def test_in_kept_contact_nothing_is_known_of_the_deflection():
+    """Were its sign known as where contact is lost, ``x+ = -2 x + d`` would not grow."""
+    system = pushed(replace(bouncing_in_steps(), contact=None))
+    names = [[name for name, *_ in step.products] for step in steps_by_words(system).values()]
+    assert names == [["in mode m0: 0"], ["in mode m1: 0"]]

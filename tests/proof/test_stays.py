@@ -191,6 +191,7 @@ def test_what_must_be_left_can_be_left(transitions):
 def test_pieces_are_limited(monkeypatch):
     """Of three modes two are left, each in two ways."""
     system = family([[-1]], [[-1]], [[-1]], switching=left_within((1, 2), (1, 2)))
+    assert Stays() == Stays((), 1)
     for pieces in (0, -1, 4097):
         assert odd(system, ("m0",), pieces) == PIECES
     assert odd(system, ("m0",), 4096) is None

@@ -13,10 +13,11 @@ from math import lcm, prod
 from random import Random
 
 import numpy as np
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mat
 from scipy.linalg import expm
 
 from nrs_design.proof.channels import Channel
+from nrs_design.proof.constant import system_at
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -28,6 +29,7 @@ from nrs_design.proof.evidence import (
     OffsetEllipsoid,
     SaturatedEllipsoid,
 )
+from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock
@@ -72,18 +74,15 @@ def is_in_other_units(form, wanted: Rows) -> bool:
     )
 
 
-def is_definite(M: Rows, *, strictly: bool = True) -> bool:
-    M = [list(row) for row in M]
-    if any(len(row) != len(M) for row in M) or transpose(M) != M:
+def is_definite(M: Sequence[Sequence], *, strictly: bool = True) -> bool:
+    """Tell by minors whether a matrix is symmetric and positive (semi)definite."""
+    M, n = [list(row) for row in M], len(M)
+    if any(len(row) != n for row in M) or transpose(M) != M:
         return False
     if strictly:
-        return all(determinant([row[:k] for row in M[:k]]) > 0 for k in range(1, len(M) + 1))
-    chosen = product((False, True), repeat=len(M))
-    return all(
-        determinant([[M[i][j] for j, b in enumerate(keep) if b] for i in index]) >= 0
-        for keep in chosen
-        if (index := [i for i, b in enumerate(keep) if b])
-    )
+        return all(determinant([row[:k] for row in M[:k]]) > 0 for k in range(1, n + 1))
+    chosen = ([i for i in range(n) if mask >> i & 1] for mask in range(1, 2**n))
+    return all(determinant([[M[i][j] for j in kept] for i in kept]) >= 0 for kept in chosen)
 
 
 def determinant(M: Rows) -> Fraction:
@@ -105,52 +104,23 @@ def decrease(A: Rows, Q: Rows, rate: Fraction, time: Time) -> Rows:
     return combine((rate**2, Q), (-1, times(transpose(A), times(Q, A))))
 
 
+def is_stable_by_lyapunov(A: Rows, time: Time) -> bool:
+    """A is Hurwitz iff ``A'P + PA = -I`` (Schur iff ``A'PA - P = -I``) has P > 0; in fractions."""
+    n = range(len(A))
+    pairs = [(i, j) for i in n for j in n if i <= j]
+    units = [[[Fraction({r, c} == {*pair}) for c in n] for r in n] for pair in pairs]
+    images = [decrease(A, E, Fraction(time is Time.DISCRETE), time) for E in units]
+    entries = [_fmpq(image[i][j]) for i, j in pairs for image in images]
+    left = fmpq_mat(len(pairs), len(pairs), entries)
+    if left.det() == 0:
+        return False
+    P = left.solve(fmpq_mat(len(pairs), 1, [fmpq(int(i == j)) for i, j in pairs]))
+    weights = [_fraction(P[k, 0]) for k in range(len(pairs))]
+    return is_definite(combine(*zip(weights, units, strict=True)))
+
+
 def is_rate(rate: Fraction, time: Time) -> bool:
     return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
-
-
-def _mode_polynomials_decrease(system: SwitchedSystem, evidence: FormsOnGraph) -> bool:
-    """Evaluate the polynomials where the definition says that they decrease, at many states."""
-    d, rate = evidence.degree, evidence.rate
-    functions = dict(evidence.nodes)
-    if not is_rate(rate, system.time) or set(functions) != {m.name for m in system.modes}:
-        return False
-
-    def value(name: str, x: Sequence[Fraction]) -> Fraction:
-        # In integers over one denominator, which take a tenth of the time of fractions.
-        whole, Q = lcm(*(entry.denominator for entry in x)), functions[name]
-        z = [prod(p) for p in combinations_with_replacement([int(whole * e) for e in x], d)]
-        form = sum(a * Q[i][j] * b for i, a in enumerate(z) for j, b in enumerate(z))
-        return Fraction(form, whole ** (2 * d))
-
-    def image(A: RationalMatrix, x: Sequence[Fraction]) -> list[Fraction]:
-        rows = A.fractions()
-        return [sum((a * b for a, b in zip(row, x, strict=True)), Fraction(0)) for row in rows]
-
-    random = Random(0)
-    stays = system.stays()
-    for _ in range(40):
-        for mode in system.modes:
-            x = [Fraction(random.randint(-99, 99)) for _ in mode.A.fractions()]
-            if not any(x):
-                continue
-            before, stay, y, steps = value(mode.name, x), stays[mode.name], x, 0
-            left = mode.name in evidence.stays.leaving
-            if before <= 0:
-                return False
-            if not left and value(mode.name, image(mode.A, x)) >= rate ** (2 * d) * before:
-                return False
-            last = stay.longest if left and stay.longest is not None else stay.shortest
-            while steps < last:
-                y, steps = image(mode.A, y), steps + 1
-                if steps < stay.shortest:
-                    continue
-                for edge in system.edges():
-                    if edge.source is mode:
-                        after = y if edge.map is None else image(edge.map, y)
-                        if value(edge.target.name, after) >= rate ** (2 * d * steps) * before:
-                            return False
-    return True
 
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
@@ -251,7 +221,7 @@ def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
     ):
         return False
     if item.stays is not None:
-        ruled = _mode_quadratic if item.degree == 1 else _mode_polynomials_decrease
+        ruled = _mode_quadratic if item.degree == 1 else _polynomials
         return system.clock is None and ruled(system, item)
     lost = any(node.place.startswith("free") for node in item.nodes)
     if lost and system.contact is None:
@@ -441,57 +411,42 @@ def _without(M: Rows, k: int) -> Rows:
     return [[*row[:k], *row[k + 1 :]] for row in M]
 
 
-def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool) -> bool:
-    """In contact a polynomial, and in free motion its terms without the deflection."""
-    n, d, rate, flows = system.order, item.degree, item.rate, system.time is Time.CONTINUOUS
-    forms, vanishing = dict(item.nodes), list(item.vanishing)
-    parts = [("modes", n, [mode.A for mode in system.modes])]
-    if lost:
-        if system.contact.pulls or not flows:
-            return False
-        inner = ([row[:-1] for row in m.A.fractions()[:-1]] for m in system.contact.free)
-        parts.append(("free", n - 1, list(map(RationalMatrix.from_rows, inner))))
-    count = sum(len(matrices) for *_, matrices in parts)
-    if len(forms) < len(item.nodes) or item.multipliers or len(vanishing) != count:
+def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool = False) -> bool:
+    """Evaluate them at many states, before and after every step: in a flow, after a tiny one."""
+    d, rate, functions, maps = item.degree, item.rate, dict(item.nodes), []
+    flows, tiny, ruled = system.time is Time.CONTINUOUS, Fraction(1, 10**15), item.stays is not None
+    if len(functions) < len(item.nodes) or item.multipliers or (lost and not flows):
         return False
-    x = fmpq_mpoly_ctx.get([f"x{i}" for i in range(n)], Ordering.lex).gens()
-    for place, size, matrices in parts:
-        Q, z = forms[place], _monomials(x[:size], d)
-        if len(Q) != len(z) or not is_definite(Q):
+    for mode in (*system.modes, *(system.contact.free if lost else ())):
+        A, place, keeps = mode.A.fractions(), mode.name if ruled else "modes", rate ** (2 * d)
+        if mode not in system.modes:
+            A, place = [row[:-1] for row in A[:-1]], "free"
+        if flows:
+            A, keeps = combine((1, identity(len(A))), (tiny, A)), 1 - 2 * d * rate * tiny
+        left = ruled and mode.name in item.stays.leaving
+        maps += [] if left else [(place, place, A, keeps)]
+        for a, b, G in edges_of(system) if ruled else ():
+            stays = _stays(system.time, *bounds_of(system, a), leaving=left) if a == place else ()
+            maps += [(a, b, _after(G, A, stay), keeps**stay) for stay in stays]
+
+    def value(place: str, x: Sequence[Fraction]) -> Fraction:
+        # In integers over one denominator, which take a tenth of the time of fractions.
+        whole, Q = lcm(*(entry.denominator for entry in x)), functions[place]
+        z = [prod(p) for p in combinations_with_replacement([int(whole * e) for e in x], d)]
+        form = sum(a * Q[i][j] * b for i, a in enumerate(z) for j, b in enumerate(z))
+        return Fraction(form, whole ** (2 * d))
+
+    random = Random(0)
+    if {*functions} != {source for source, *_ in maps}:
+        return False
+    for source, target, M, keeps in maps * 40:
+        x = [Fraction(random.randint(-99, 99)) for _ in M[0]]
+        if source == "free" and value(source, x) != value("modes", [*x, Fraction(0)]):
             return False
-        V = _form(Q, z)
-        if place == "free":
-            above = _form(forms["modes"], _monomials(x, d))
-            if above.compose(*x[:-1], 0 * x[-1]) != V:
-                return False
-        for A, N in zip(matrices, vanishing, strict=False):
-            if len(N) != len(z) or _form(N, z) != 0:
-                return False
-            Ax = [sum(_fmpq(a) * v for a, v in zip(row, x, strict=False)) for row in A.fractions()]
-            if flows:
-                moved = [sum(p.derivative(i) * v for i, v in enumerate(Ax)) for p in (V, *z)]
-                kept, factor = d * rate, A.denominator * (2 * d * rate * A.denominator).denominator
-                wanted = -moved[0] - _fmpq(2 * d * rate) * V
-            else:
-                moved = [p.compose(*Ax, *x[size:]) for p in (V, *z)]
-                kept, factor = rate**d, A.denominator ** (2 * d) * (rate**d).denominator ** 2
-                wanted = _fmpq(rate ** (2 * d)) * V - moved[0]
-            keys = [next(iter(p.to_dict())) for p in z]
-            lifted = [[_fraction(p.to_dict().get(k, fmpq(0))) for k in keys] for p in moved[1:]]
-            form = decrease(lifted, Q, kept, system.time)
-            assert _form(form, z) == wanted
-            if not is_definite(combine((factor, form), (1, N))):
-                return False
-        del vanishing[: len(matrices)]
+        (after,) = transpose(times(M, transpose([x])))
+        if any(x) and (value(source, x) <= 0 or value(target, after) >= keeps * value(source, x)):
+            return False
     return True
-
-
-def _monomials(x: Sequence[fmpq_mpoly], degree: int) -> list[fmpq_mpoly]:
-    return [prod(p) for p in combinations_with_replacement(x, degree)]
-
-
-def _form(M: Rows, z: Sequence[fmpq_mpoly]) -> fmpq_mpoly:
-    return sum(_fmpq(M[i][j]) * a * b for i, a in enumerate(z) for j, b in enumerate(z))
 
 
 def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
@@ -642,14 +597,6 @@ def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> boo
     return len(set(names)) == len(names) and is_definite(total)
 
 
-def weights(shares: Sequence[Fraction]) -> list[Fraction]:
-    """Return the weight of every corner of a box, the last parameter turning fastest."""
-    found = [Fraction(1)]
-    for share in shares:
-        found = [w * s for w in found for s in (1 - share, share)]
-    return found
-
-
 def _constants_quadratic(system: SwitchedSystem, item: ConstantsQuadratic) -> bool:
     """Sample the weights; with each of them the decrease is that of a common quadratic."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
@@ -726,11 +673,15 @@ def _stays(time, shortest, longest, *, leaving) -> list[Fraction]:
     return [shortest + (longest - shortest) * Fraction(k, 64) for k in range(65)]
 
 
+def _after(G: Rows, A: Rows, steps: Fraction) -> Rows:
+    for _ in range(int(steps)):
+        G = times(G, A)
+    return G
+
+
 def _does_not_raise(A, G, before, after, rate, time, stay) -> bool:
     if time is Time.DISCRETE:
-        jump = G
-        for _ in range(int(stay)):
-            jump = times(jump, combine((1 / rate, A)))
+        jump = _after(G, combine((1 / rate, A)), stay)
         image = times(transpose(jump), times(after, jump))
         return is_definite(combine((1, before), (-1, image)))
     if stay == 0:
@@ -757,19 +708,18 @@ def _growing_sequence(system: SwitchedSystem, item: GrowingSequence) -> bool:
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     mean = combine(*((w, modes[name]) for name, w in item.steps))
     proper = all(w >= 0 for _, w in item.steps) and sum(w for _, w in item.steps) == 1
-    return proper and _is_marginal_or_worse(RationalMatrix.from_rows(mean), system.time)
+    return proper and not is_stable_by_lyapunov(mean, system.time)
 
 
 def _is_unstable_mode(system: SwitchedSystem, name: str) -> bool:
     if system.clock is not None:
         return False
-    A = next((mode.A for mode in system.modes if mode.name == name), None)
+    A = next((mode.A.fractions() for mode in system.modes if mode.name == name), None)
     if A is None:
         # In the air, the deflection is not looked at.
         (whole,) = (m.A.fractions() for m in system.contact.free if m.name == name)
-        A = RationalMatrix.from_rows([row[:-1] for row in whole[:-1]])
-    may_stay = bounds_of(system, name)[1] is None
-    return may_stay and _is_marginal_or_worse(A, system.time)
+        A = [row[:-1] for row in whole[:-1]]
+    return bounds_of(system, name)[1] is None and not is_stable_by_lyapunov(A, system.time)
 
 
 def _grows_in_contact(system: SwitchedSystem, item: GrowingSequence) -> bool:
@@ -811,13 +761,6 @@ def _grows_in_contact(system: SwitchedSystem, item: GrowingSequence) -> bool:
 def _eigen(M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     values, vectors = np.linalg.eig(M)
     return values, vectors.T
-
-
-def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
-    values = np.linalg.eigvals(np.array(A.floats()))
-    if time is Time.CONTINUOUS:
-        return bool(values.real.max() > -1e-7)
-    return bool(np.abs(values).max() > 1 - 1e-7)
 
 
 def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
@@ -875,42 +818,10 @@ def goes_on(clock: Clock, names: Sequence[str]) -> bool:
 
 
 def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:
-    """It must hold for the averages of the ends, under the rules that both ends share."""
-    modes = {mode.name: mode.A.fractions() for mode in system.modes}
-    names = {}
-    for corners in system.switching.fixed_ends:
-        parts = zip(*(corner.split("/") for corner in corners), strict=False)
-        same = [labels[0] for labels in parts if len(set(labels)) == 1]
-        names["/".join(same) or " to ".join(corners)] = corners
-    averages = tuple(
-        Mode(
-            name,
-            RationalMatrix.from_rows(
-                combine(*zip(weights(item.shares), (modes[c] for c in corners), strict=True))
-            ),
-        )
-        for name, corners in names.items()
-    )
-    part = replace(item, shares=())
-    if len(item.steps) > 1 and not _obeys(system, part, names):
+    """The system at a value, which is told apart in test_constant.py, is one without parameters."""
+    if not all(0 <= share <= 1 for share in item.shares):
         return False
-    inside = all(0 <= share <= 1 for share in item.shares)
-    return inside and holds(replace(system, modes=averages), part)
-
-
-def _obeys(system: SwitchedSystem, part: GrowingSequence, names: Mapping[str, tuple]) -> bool:
-    allowed = system.switching.transitions
-    steps = [names[name] for name, _ in part.steps]
-    switches = [
-        pair
-        for a, b in zip(steps, steps[1:] + steps[:1], strict=True)
-        if a != b
-        for pair in zip(a, b, strict=True)
-    ]
-    if part.doublings is None:
-        return not system.switching.dwell_time and allowed is None
-    long_enough = all(dwell >= system.switching.dwell_time for _, dwell in part.steps)
-    return long_enough and (allowed is None or set(switches) <= set(allowed))
+    return holds(system_at(system, item.shares), replace(item, shares=()))
 
 
 def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
@@ -924,19 +835,9 @@ def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
                 return False
     covered = {k for k, _ in item.parts}
     complete = covered == set(range(len(item.blocks))) or str(item.shows) != "stability"
-    return complete and all(holds(restrict(system, item.blocks[k]), part) for k, part in item.parts)
-
-
-def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
-    """Return the family of one diagonal block."""
-    modes = tuple(
-        Mode(
-            mode.name,
-            RationalMatrix.from_rows([[mode.A.fractions()[i][j] for j in block] for i in block]),
-        )
-        for mode in system.modes
+    return complete and all(
+        holds(diagonal_block(system, item.blocks[k]), part) for k, part in item.parts
     )
-    return replace(system, states=tuple(system.states[i] for i in block), modes=modes)
 
 
 _ORACLES = {

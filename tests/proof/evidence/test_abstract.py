@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
 import pytest
@@ -44,10 +43,11 @@ class Claimed(AbstractEvidence):
     matrices: tuple = ()
     misfit: str | None = None
     shift: int = 0
+    shows = Shows.STABILITY
+    rate = None
 
-    @property
-    def shows(self):
-        return Shows.STABILITY
+    def proved_rate(self, system):
+        return self.rate
 
     def find_misfit(self, system):
         return self.misfit
@@ -57,47 +57,12 @@ class Claimed(AbstractEvidence):
             yield "it fails", tuple(tuple(v << self.shift for v in row) for row in form)
 
     def claim_in_scope(self, system):
-        return ""
-
-    def to_fields(self):
-        return {}
-
-    @classmethod
-    def from_fields(cls, fields, system):
-        return cls()
-
-
-@dataclass(frozen=True)
-class Said(Claimed):
-    """Evidence that shows what it is told, at the rate that it is told."""
-
-    what: Shows = Shows.STABILITY
-    rate: Fraction | None = None
-
-    @property
-    def shows(self):
-        return self.what
-
-    def proved_rate(self, system):
-        return self.rate
-
-    def claim_in_scope(self, system):
         return "It is so."
 
 
-@dataclass(frozen=True)
-class SaidOfAllContact(Said):
-    covers_lost_contact = True
-
-
-@dataclass(frozen=True)
-class SaidOfUnequalModes(Said):
-    allows_unequal_modes = True
-
-
-@dataclass(frozen=True)
-class SaidWithRounding(Said):
-    covers_rounding = True
+def saying(**facts):
+    """Return evidence that says of itself what it is told."""
+    return type("Said", (Claimed,), facts)()
 
 
 KEPT = " This holds as long as contact is kept, the environment pulling as it pushes."
@@ -117,19 +82,21 @@ TAKEN = (
 
 @pytest.mark.parametrize(("what", "kept", "rounded", "is_refused"), TAKEN)
 def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
-    one, said = matrix([[1]]), Said(what=what)
+    one, said = matrix([[1]]), saying(shows=what)
     exact = family([["1/2"]], time=Time.DISCRETE)
     rounding = replace(exact, roundings=(Rounding("x", (one,), (one,)),))
     included = " What single-precision arithmetic rounds in the law is included."
     assert said.claim(rounding) == f"It is so.{rounded}"
-    assert SaidWithRounding(what=what).claim(rounding) == f"It is so.{included}"
-    for evidence in (said, SaidWithRounding(what=what)):
+    covering = saying(shows=what, covers_rounding=True)
+    assert covering.claim(rounding) == f"It is so.{included}"
+    for evidence in (said, covering):
         assert evidence.claim(exact) == "It is so."
     assert not said.covers_rounding
+    of_all_contact = saying(shows=what, covers_lost_contact=True)
     for system in (bouncing(), bouncing_in_steps()):
         assert said.claim(system) == f"It is so.{kept}"
         assert said.claim(replace(system, contact=None)) == "It is so."
-        assert SaidOfAllContact(what=what).claim(system) == "It is so."
+        assert of_all_contact.claim(system) == "It is so."
     system = bouncing()
     losable = replace(system, contact=replace(system.contact, required=True))
     assert said.find_fault(losable) == (
@@ -137,16 +104,7 @@ def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
     )
     assert said.find_fault(system) is None
     assert said.find_fault(replace(system, contact=None)) is None
-    assert SaidOfAllContact(what=what).find_fault(losable) is None
-
-
-@dataclass(frozen=True)
-class SaidOfOneMode(Said):
-    mode: str = "m0"
-
-    @property
-    def used(self):
-        return frozenset((self.mode,))
+    assert of_all_contact.find_fault(losable) is None
 
 
 def test_where_the_environment_does_not_act_nothing_pulls():
@@ -155,13 +113,13 @@ def test_where_the_environment_does_not_act_nothing_pulls():
     (free,) = system.contact.free
     slack = replace(system, modes=(Mode("m0", free.A), *system.modes[1:]))
     constant = replace(slack, switching=Switching(fixed_ends=(("m0", "m1"),)))
-    grown = partial(SaidOfOneMode, what=Shows.INSTABILITY)
+    grown, other = (saying(shows=Shows.INSTABILITY, used=frozenset({m})) for m in ("m0", "m1"))
     kept = "It is so. This growth is that in kept contact"
     pulling = ", the environment pulling as it pushes"
-    assert grown().claim(slack) == f"{kept}."
-    assert grown(mode="m1").claim(slack) == f"{kept}{pulling}."
-    assert Said().claim(slack).endswith(f"{pulling}.")
-    assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
+    assert grown.claim(slack) == f"{kept}."
+    assert other.claim(slack) == f"{kept}{pulling}."
+    assert saying().claim(slack).endswith(f"{pulling}.")
+    assert not saying().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
     for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
         value = replace(staying("m0 to m1"), shares=(Fraction(share),))
         assert value.claim(constant).endswith(f"in kept contact{tail}")
@@ -171,17 +129,17 @@ def test_where_the_environment_does_not_act_nothing_pulls():
         contact=None,
         flights=Flights(("m0", "m1"), ("free",)),
     )
-    assert grown().claim(among).endswith("lost and made at any deflection.")
-    assert grown(mode="m1").claim(among).endswith(f"at any deflection{pulling}.")
+    assert grown.claim(among).endswith("lost and made at any deflection.")
+    assert other.claim(among).endswith(f"at any deflection{pulling}.")
 
 
 def test_a_rate_by_the_step_is_said_in_seconds_too():
     system = replace(bouncing_in_steps(), contact=None)
     words = "A step takes 0.1 s, so that is exp(-alpha t) with alpha"
-    assert Said(rate=Fraction(3, 4)).claim(system) == f"It is so. {words} = 2.5 1/s."
-    assert Said(rate=Fraction(2, 3)).claim(system) == f"It is so. {words} >= 3.33333 1/s."
-    assert Said().claim(system) == "It is so."
-    assert Said(rate=Fraction(3, 4)).claim(replace(system, sample_time=None)) == "It is so."
+    assert saying(rate=Fraction(3, 4)).claim(system) == f"It is so. {words} = 2.5 1/s."
+    assert saying(rate=Fraction(2, 3)).claim(system) == f"It is so. {words} >= 3.33333 1/s."
+    assert saying().claim(system) == "It is so."
+    assert saying(rate=Fraction(3, 4)).claim(replace(system, sample_time=None)) == "It is so."
 
 
 def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
@@ -196,8 +154,8 @@ def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
 
 def test_unequal_modes_where_they_are_allowed():
     unequal = family([[-1]], [[-1, 0], [0, -1]])
-    assert SaidOfUnequalModes().find_fault(unequal) is None
-    assert SaidOfUnequalModes().find_fault(SYSTEM) is None
+    for system in (unequal, SYSTEM):
+        assert saying(allows_unequal_modes=True).find_fault(system) is None
 
 
 def test_rules_that_contradict_each_other_carry_no_proof():

@@ -10,7 +10,6 @@ from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from tests.proof.graphs import common_polynomial, common_quadratic, mode_quadratic
-from tests.proof.rows import cases, check
 from tests.proof.systems import family, genuine
 from tests.support import ends_soon
 
@@ -25,11 +24,6 @@ def test_the_rate_is_that_of_the_slowest_block():
     steps = family([["1/8", 5], [0, "1/4"]], time=Time.DISCRETE)
     fast = BlockTriangular(((0,), (1,)), ((0, replace(ONE, rate=Fraction(1, 4))), (1, ONE)))
     assert fast.proved_rate(steps) == Fraction(1, 2)
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 def test_the_claim_names_blocks_and_states():

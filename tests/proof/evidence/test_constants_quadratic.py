@@ -4,16 +4,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from nrs_design.proof.constant import system_at
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     companion,
     family,
@@ -22,7 +18,7 @@ from tests.proof.systems import (
     oscillator,
     shears,
 )
-from tests.proof.truth import combine, decrease, holds, is_definite, weights
+from tests.proof.truth import holds
 
 KINDS = ("constants-quadratic", "constants-quadratic, continuous")
 PAIR = Switching(fixed_ends=(("m0", "m1"),))
@@ -78,24 +74,6 @@ def test_a_constant_stiffness_is_stable_however_large(kbar):
     assert 0 < found.evidence.rate <= Fraction(1, 2)
     assert holds(found.system, found.evidence)
     assert certify(oscillator(kbar)).verdict is Verdict.REFUTED
-
-
-@settings(max_examples=20, deadline=None)
-@given(
-    st.sampled_from(KINDS),
-    st.tuples(st.fractions(0, 1, max_denominator=50), st.fractions(0, 1, max_denominator=50)),
-)
-def test_every_mode_decreases_the_function_of_its_value_exactly(kind, shares):
-    system, evidence = genuine(kind)
-    P = combine(*zip(weights(shares), evidence.functions, strict=True))
-    assert is_definite(P)
-    for mode in system_at(system, shares).modes:
-        assert is_definite(decrease(mode.A.fractions(), P, evidence.rate, system.time))
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 @pytest.mark.parametrize("kind", KINDS)

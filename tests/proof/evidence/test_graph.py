@@ -8,11 +8,9 @@ from fractions import Fraction
 from itertools import product
 from math import comb
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.linalg import expm
 
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Rounding
@@ -21,14 +19,12 @@ from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence import graph as graph_module
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED
 from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, Node
-from nrs_design.proof.lift import monomials
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Stays
-from nrs_design.proof.switching import Clock, Reset, Stay, Switching
+from nrs_design.proof.switching import Clock, Reset, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Verdict, certify
-from nrs_design.search.graphs import search_polynomial
 from nrs_design.search.method import Method
 from tests.proof.graphs import (
     common_polynomial,
@@ -38,9 +34,7 @@ from tests.proof.graphs import (
     mode_quadratic,
     one_form,
     scalars,
-    undeflected,
 )
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     LAGGING,
     Entry,
@@ -50,7 +44,6 @@ from tests.proof.systems import (
     bouncing_in_steps,
     bouncing_in_turns,
     crowded,
-    doubled_in_turns,
     family,
     genuine,
     losable,
@@ -59,11 +52,9 @@ from tests.proof.systems import (
     pushed,
     resets_between,
     shears,
-    slow_switching_in_steps,
 )
-from tests.proof.truth import edge_form, edges_at, holds, is_in_other_units, moves
-from tests.search.support import found as accepted
-from tests.support import broken, ends_soon, is_definite_by_ldl
+from tests.proof.truth import edge_form, edges_at, holds, is_definite, is_in_other_units, moves
+from tests.support import broken, ends_soon
 
 HALF, STEPS = Fraction(1, 2), Time.DISCRETE
 I2 = ((1, 0), (0, 1))
@@ -94,11 +85,6 @@ def with_form(evidence: FormsOnGraph, k: int, form) -> FormsOnGraph:
     nodes = list(evidence.nodes)
     nodes[k] = Node(nodes[k].place, form)
     return replace(evidence, nodes=tuple(nodes))
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 class TestPolynomials:
@@ -237,29 +223,19 @@ class TestLostContact:
         assert "contact is kept" not in kept
 
     @pytest.mark.parametrize("where", ESCAPES)
-    @pytest.mark.parametrize("shape", ["one", "each", "turns"])
-    def test_each_condition_in_steps_bars_a_family_that_grows(self, where, shape):
+    def test_each_condition_in_steps_bars_a_family_that_grows(self, where):
         contact, free, Q = ESCAPES[where]
-        system = single = losable(contact, free, STEPS)
+        system = losable(contact, free, STEPS)
         whole = tuple(tuple(64 * entry for entry in row) for row in Q)
-        block = tuple(row[:-1] for row in whole[:-1])
-        wanted, faults = {where}, set()
-        if shape == "turns":
-            system = in_two_turns(single)
-            wanted = {f"{where}, first, at step 0", f"{where}, at step 1"}
+        faults = []
         for m in (0, 16, 32, 64, 128, 256, 512):
-            candidate = conewise(single, whole, SLOW98, (m,))
-            if shape == "each":
-                candidate = conewise_modes((("m0", whole),), (("f", block),), 0, SLOW98, (m,))
-            if shape == "turns":
-                candidate = in_turns(system, (whole, whole), 0, SLOW98, ((m,), (m,)))
-            places = broken(system, candidate)
-            assert wanted <= places
+            candidate = conewise(system, whole, SLOW98, (m,))
             assert candidate.find_fault(system) is not None
-            faults.add(frozenset(places))
+            faults.append(broken(system, candidate))
+        assert all(where in places for places in faults)
         # With some multiplier nothing else is broken.
-        assert frozenset(wanted) in faults
-        assert max(growth(single, Q, start) for start in range(40)) > 1000
+        assert {where} in faults
+        assert max(growth(system, Q, start) for start in range(40)) > 1000
 
     def test_landing_at_the_surface_is_a_condition_of_its_own(self):
         """A family that grows, with functions that keep all but that. Found by a random search."""
@@ -292,9 +268,6 @@ class TestLostContact:
             assert fault == f"V does not decrease at the claimed rate {where}"
         sprung = replace(system, contact=Contact(system.contact.free))
         assert conewise(sprung, Q, rate, multipliers[:1]).find_fault(sprung) is None
-        turns = in_turns(in_two_turns(system), (Q, Q), 0, rate, (multipliers,) * 2)
-        places = {f"{where}, first, at step 0", f"{where}, at step 1"}
-        assert broken(in_two_turns(system), turns) == places
         x = [Fraction(entry) for entry in x]
         (pull,), (free,) = (q.fractions()[0] for q in system.contact.pulls), system.contact.free
         after = image(free.A.fractions(), x)
@@ -378,59 +351,14 @@ class TestAgainstTheDefinition:
             candidate = conewise(system, forms[0], rate, tuple(multipliers[:count]))
         assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
-    @settings(deadline=None)
-    @given(
-        st.lists(st.lists(st.integers(-5, 5), min_size=4, max_size=4), min_size=1, max_size=3),
-        st.lists(st.integers(-5, 9), min_size=6, max_size=6),
-        st.integers(-3, 3),
-        st.fractions("1/10", 3),
-        st.sampled_from(list(Time)),
-        st.booleans(),
-    )
-    def test_kept_contact(self, modes, entries, shift, rate, time, quartic):
-        matrices = ([row[:2], row[2:]] for row in modes)
-        system = family(*([[Fraction(e, 6) for e in r] for r in A] for A in matrices), time=time)
-        p, q, r, s, t, u = entries
-        evidence = common_quadratic(((p, q), (q, r)), 0, rate)
-        if quartic:
-            rows = ((p, q, r), (q, s, t), (r, t, u))
-            N = ((0, 0, shift), (0, -2 * shift, 0), (shift, 0, 0))
-            evidence = common_polynomial(2, rows, 0, (N,) * len(modes), rate)
-        assert (evidence.find_fault(system) is None) == holds(system, evidence)
-
-
-# x doubles, then loses a quarter three times: 2 (3/4)^3 = 0.84375, so 0.9584 a step.
-def four(*values: int, rate: Entry = "0.977") -> tuple[SwitchedSystem, FormsOnGraph]:
-    system = doubled_in_turns(len(values))
-    return system, in_turns(system, [((value,),) for value in values], 0, Fraction(rate))
-
 
 class TestTurns:
-    def test_known_answer_of_one_state(self):
-        system, evidence = four(64, 15, 25, 42)
-        assert agrees(system, evidence)
-        claim = evidence.claim(system)
-        assert claim.startswith("In rounds of 4 steps, every solution of x+ = A x, with any mode")
-        assert "deflection" not in claim
-
-    def test_a_round_that_grows_is_not_proved(self):
-        """2 (3/4)^2 is above one: without the step from the last form to the first, all holds."""
-        system, candidate = four(64, 15, 26, rate="0.99")
-        assert broken(system, candidate) == {"in mode m1, at step 2"}
-
     def test_what_is_not_rounded_is_said(self):
         system, evidence = genuine("periodic-quadratic, rounding")
         kept = tuple(m for m in evidence.multipliers if not m.fact.startswith("rounding"))
         exact = replace(evidence, multipliers=kept)
         assert exact.find_fault(system) is None
         assert NOT_ROUNDED in exact.claim(system)
-        item = system.roundings[0]
-        for where in range(5):
-            rows = list(item.rows)
-            rows[where] = replace(rows[where], denominator=1, numerators=((4, 0),))
-            other = replace(system, roundings=(replace(item, rows=tuple(rows)),))
-            assert exact.find_fault(other) is None
-            assert evidence.find_fault(other) is not None
 
 
 class TestStays:
@@ -445,25 +373,6 @@ class TestStays:
         system = shears(replace(rules, fixed_ends=(("m0", "m1"),)))
         found = self.by_modes(shears(rules)).evidence
         assert found is None or "kind of switching" in found.find_fault(system)
-
-    def test_the_middle_of_a_stay_counts(self):
-        """A turn that is harmless at both ends of a stay, and not in between."""
-        turn = [[0, "3.14159265"], ["-3.14159265", 0]]
-        stays = (("m0", Stay(Fraction(1), Fraction(2))), ("m1", Stay(Fraction(1))))
-        system = family(turn, [[-1, 0], [0, -1]], switching=Switching(stays=stays))
-        forms = (("m0", ((100, 0), (0, 4))), ("m1", ((60, 0), (0, 2))))
-        evidence = mode_quadratic(forms, 0, Fraction(1, 1000), ("m0",), 256)
-        assert not holds(system, evidence)
-        assert "after some stay" in evidence.find_fault(system)
-        for end in stays[0][1].shortest, stays[0][1].longest:
-            rules = Switching(stays=(("m0", Stay(end, end)), stays[1]))
-            only = replace(evidence, stays=Stays(("m0",)))
-            assert only.find_fault(replace(system, switching=rules)) is None
-        large = with_form(with_form(evidence, 0, ((100, 0), (0, 90))), 1, ((60, 0), (0, 59)))
-        assert large.find_fault(system) is None
-        assert holds(system, large)
-        # Pieces that are too coarse show nothing.
-        assert "after some stay" in replace(large, stays=Stays(("m0",))).find_fault(system)
 
     @pytest.mark.parametrize("exponent", [3, 12, 300])
     def test_stiff_modes_neither_hang_nor_crash(self, exponent):
@@ -632,7 +541,7 @@ def quartic(*values: int) -> FormsOnGraph:
 )
 def test_one_condition_fails_and_the_family_grows(system, evidence, words):
     assert evidence.find_misfit(system) is None
-    failing = [why for why, form in evidence.forms(system) if not is_definite_by_ldl(form)]
+    failing = [why for why, form in evidence.forms(system) if not is_definite(form)]
     assert len(failing) == 1
     assert words in failing[0]
     assert failing[0] in evidence.find_fault(system)
@@ -646,14 +555,6 @@ def test_turns_in_steps_have_the_forms_of_one_for_all():
         twice = in_turns(system, (Q2_STEPS,) * 2, 0, SLOW, (crossings,) * 2)
         forms = {str(form) for _, form in one.forms(system)}
         assert forms == {str(form) for _, form in twice.forms(in_two_turns(system))}
-
-
-def test_bouncing_in_turns_rounds():
-    system = bouncing_in_turns(rounded=True)
-    forms = (((40, 20), (20, 60)),) * 2
-    none = in_turns(system, forms, 0, SLOW, ((0,), (0,)), ((0,), (0,)))
-    assert none.find_misfit(system) is None
-    assert none.covers_rounding
 
 
 FORMS3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8)), ((6, 1, 2), (1, 5, -2), (2, -2, 7))
@@ -816,57 +717,6 @@ class TestRefused:
 
 
 class TestAttacks:
-    # Contact and flight are stable, each for itself, and bouncing grows. Found by a random search.
-    TOUCHING, FLYING = [[2, -1, 2], [5, -3, 4], [1, -3, 0]], [[-1, 6], [0, -2]]
-
-    def growing(self) -> SwitchedSystem:
-        free = [[*row, 0] for row in (*self.FLYING, self.TOUCHING[2][:2])]
-        return losable(self.TOUCHING, free, Time.CONTINUOUS)
-
-    def alone(self, A) -> FormsOnGraph:
-        found = accepted(search_polynomial, family(A), degree=2, optimize_rate=False)
-        assert isinstance(found, FormsOnGraph)
-        assert found.degree == 2
-        return found
-
-    def test_the_family_grows(self):
-        system = self.growing()
-        contact, free = (
-            expm(0.02 * np.array(mode.A.floats())) for mode in (*system.modes, *system.contact.free)
-        )
-        x = np.array([1.0, -1.0, 1.0])
-        for _ in range(3000):
-            x = (contact if x[2] > 0 else free) @ x
-        assert np.linalg.norm([*x[:2], max(x[2], 0.0)]) > 1e3
-
-    @pytest.mark.parametrize("where", ["in mode m0", "in free motion, mode f", "at the surface"])
-    def test_each_condition_of_a_polynomial_bars_a_family_that_grows(self, where):
-        system = self.growing()
-        contact, flight = self.alone(self.TOUCHING), self.alone(self.FLYING)
-        Q, (N,) = contact.nodes[0].form, contact.vanishing
-        inner, (R,) = flight.nodes[0].form, flight.vanishing
-        if where == "in free motion, mode f":
-            # A form of contact alone.
-            inner, R = undeflected(Q, 3, 2), ((0,) * 3,) * 3
-        if where == "in mode m0":
-            # A form of flight alone, filled up to all states.
-            kept = [k for k, term in enumerate(monomials(3, 2)) if not term[-1]]
-            rows = [[int(i == j) for j in range(6)] for i in range(6)]
-            for a, i in enumerate(kept):
-                for b, j in enumerate(kept):
-                    rows[i][j] = inner[a][b]
-            Q, N = tuple(map(tuple, rows)), ((0,) * 6,) * 6
-        nodes = Node("modes", Q), Node("free", inner)
-        rate = flight.rate if where == "in mode m0" else contact.rate
-        forged = replace(contact, nodes=nodes, vanishing=(N, R), rate=rate)
-        assert where in forged.find_fault(system)
-        if where == "at the surface":
-            assert contact.find_fault(family(self.TOUCHING)) is None
-            assert flight.find_fault(family(self.FLYING)) is None
-        else:
-            assert broken(system, forged) == {where}
-        assert not holds(system, forged)
-
     def test_a_form_in_flight_that_does_not_vanish_proves_nothing(self):
         """It would make any decrease positive: here that of a mass that does not slow down."""
         sliding = losable([[-2, -1], [1, 0]], [[0, 0], [1, 0]], Time.CONTINUOUS)
@@ -896,10 +746,6 @@ class TestAttacks:
 
 class TestRulesOfStays:
     """What rules of switching ask for besides, and sizes that do not hang."""
-
-    def test_a_longer_dwell_time_is_covered(self):
-        longer = replace(slow_switching_in_steps(), switching=Switching(Fraction(7)))
-        assert certify(longer, Method.MODE_QUADRATIC).verdict is Verdict.PROVED
 
     @pytest.mark.parametrize("dwell", [4096, 4097, 10**30])
     def test_hostile_dwell_times_rates_and_sizes_do_not_hang(self, dwell):

@@ -10,8 +10,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from flint import arb, fmpq
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import (
     CommonQuadraticStatus,
@@ -35,10 +33,8 @@ from nrs_design.proof.evidence.growth import monodromy
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     bouncing_in_steps,
     branicky,
@@ -54,8 +50,7 @@ from tests.proof.systems import (
     shears,
     sucking_in,
 )
-from tests.proof.truth import holds
-from tests.support import ends_soon, is_stable_by_lyapunov
+from tests.support import ends_soon
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 STEPS = Time.DISCRETE
@@ -78,11 +73,6 @@ GROWING = family([[1, 1], [0, 1]], [[1, 0], [1, 1]], time=STEPS)
 NOT_SHOWN = "the enclosure of the monodromy matrix does not show growth"
 HUNDRED = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
 LONGEST = signal(*[(0, 1), (1, 1)] * 512, doublings=0)
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 def test_a_spectral_radius_of_one_or_less_is_no_growth_however_often_it_is_squared():
@@ -150,19 +140,6 @@ def test_what_is_read_is_said_in_words_before_it_is_checked(system, evidence, fa
     expect(system, evidence, fault)
     with pytest.raises(error) if error else nullcontext():
         evidence.claim(system)
-
-
-@settings(deadline=None)
-@given(st.lists(st.integers(-6, 6), min_size=9, max_size=9), st.sampled_from(list(Time)))
-def test_against_the_lyapunov_equation(entries, time):
-    """Another algorithm, without a characteristic polynomial."""
-    rows = [[Fraction(e, 5) for e in entries[i : i + 3]] for i in (0, 3, 6)]
-    system = family(rows, time=time)
-    stable = is_stable_by_lyapunov(rows, discrete=time is Time.DISCRETE)
-    assert is_stable(system.modes[0].A, time) is stable
-    evidence = staying("m0")
-    assert (evidence.find_fault(system) is None) is not stable
-    assert holds(system, evidence) is not stable
 
 
 def test_a_sequence_is_read_as_it_is_written():

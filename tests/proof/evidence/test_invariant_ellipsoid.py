@@ -7,22 +7,16 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import InvariantEllipsoid, Shows
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
-    LAGGING,
     Entry,
-    Rows,
     bouncing,
     bouncing_in_steps,
     crowded,
@@ -32,13 +26,11 @@ from tests.proof.systems import (
 )
 from tests.proof.truth import (
     combine,
-    holds,
     inequality,
     is_in_other_units,
     is_positive_multiple,
     moves,
 )
-from tests.support import is_definite_by_ldl
 
 
 def pushing(Q, log2, share, level, *multipliers):
@@ -56,11 +48,6 @@ GENUINE = (
     (pushed(replace(bouncing(), contact=None)), BOUNCE),
     (pushed(bouncing_in_steps()), STEPS),
 )
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 @pytest.mark.parametrize(("system", "evidence"), GENUINE)
@@ -128,163 +115,6 @@ def test_the_bound_in_numbers():
 
 def test_a_function_that_decreases_bounds_no_output():
     assert common_quadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
-
-
-# Families that leave the set, with evidence that keeps all conditions but one. The disturbance
-# pushes the deflection too.
-def moved(
-    contact: Rows, free: Rows, B: Rows, B_free: Rows, time: Time, *pulls: Rows
-) -> SwitchedSystem:
-    rows = tuple(matrix(q) for q in pulls)
-    return replace(
-        family(contact, time=time),
-        contact=Contact((Mode("f", matrix(free)),), rows),
-        channels=(Channel("push", "N", Fraction(1), (matrix(B), matrix(B_free))),),
-        outputs=(Output("force", "N", (matrix([[0, 1]]),)),),
-    )
-
-
-HALF, SMALL = [["1/2", 0], [0, "1/2"]], [["1/10"], ["1/10"]]
-CALM = [["1/2", 0], [0, 1]]
-ROUND = ((16, 0), (0, 16))
-ESCAPES: dict[str, tuple[SwitchedSystem, Rows]] = {
-    # delta+ = delta/2 + 9/10 d: it goes to 9/5.
-    "in mode m0": (moved(HALF, CALM, [[0], ["9/10"]], [[0], ["1/8"]], Time.DISCRETE), ROUND),
-    # Found by a random search; all other conditions hold.
-    "in free motion, mode f": (
-        moved(
-            [[0, "-2/8"], ["-2/8", 0]],
-            [["5/8", 0], ["-2/8", 1]],
-            [["3/8"], ["-5/8"]],
-            [["-3/8"], ["7/8"]],
-            Time.DISCRETE,
-        ),
-        ((26, 14), (14, 12)),
-    ),
-    # From the surface, the disturbance throws it into depth 3/2.
-    "where contact is made, mode f": (
-        moved(HALF, CALM, SMALL, [[0], ["3/2"]], Time.DISCRETE),
-        ROUND,
-    ),
-    "where contact is lost in mode m0": (
-        moved(
-            [["-5/8", "-4/8"], [1, "7/8"]],
-            [["2/8", 0], ["-6/8", 1]],
-            [["5/8"], ["-6/8"]],
-            [["-2/8"], ["1/8"]],
-            Time.DISCRETE,
-        ),
-        ((30, 24), (24, 20)),
-    ),
-}
-
-SHARES = {"in free motion, mode f": "11/16"}
-
-
-@pytest.mark.parametrize("where", ESCAPES)
-def test_each_condition_in_steps_bars_a_set_that_is_left(where):
-    system, Q = ESCAPES[where]
-    faults = set()
-    for multiplier in (0, 1, 2, 4, 8, 16, 32, 64):
-        candidate = pushing(Q, 4, SHARES.get(where, "1/2"), 10, multiplier)
-        broken = {
-            failure.removeprefix("the ellipsoid can be left ")
-            for failure, form in candidate.forms(system)
-            if not is_definite_by_ldl(form)
-        }
-        assert where in broken
-        assert candidate.find_fault(system) is not None
-        faults.add(frozenset(broken))
-    # With some multiplier nothing else is broken.
-    assert min(map(len, faults)) == 1
-    assert _largest(system, Q) > 16
-
-
-def _largest(system: SwitchedSystem, Q: Rows) -> Fraction:
-    """Return the largest 16 V from rest, of all runs of six steps with the largest disturbance."""
-    best, states = Fraction(0), [[Fraction(0), Fraction(0)]]
-    for _ in range(6):
-        states = [_moved(system, x, d) for x in states for d in (-1, 0, 1)]
-        for y, delta in states:
-            w = (y, max(delta, Fraction(0)))
-            best = max(best, sum(w[i] * Q[i][j] * w[j] for i in (0, 1) for j in (0, 1)))
-    return best
-
-
-def _moved(system: SwitchedSystem, x: list[Fraction], d: int) -> list[Fraction]:
-    touches = x[-1] > 0
-    mode = system.modes[0] if touches else system.contact.free[0]
-    B = system.channels[0].columns[0 if touches else 1].fractions()
-    rows = zip(mode.A.fractions(), B, strict=True)
-    return [sum(a * b for a, b in zip(row, x, strict=True)) + d * b[0] for row, b in rows]
-
-
-def test_each_condition_in_continuous_time_bars_a_set_that_is_left():
-    """Where the condition fails, V rises on the border V = 1 for a disturbance of its bound."""
-    contact, B = [[-2, 0], [0, -2]], [["1/2"], ["1/2"]]
-    calm = [[-2, 0], [1, 0]]
-    flying = moved(contact, calm, B, [[4], [0]], Time.CONTINUOUS)
-    lagging = moved(contact, [[-2, 0], [8, 0]], B, B, Time.CONTINUOUS, [[-9, 1]])
-    candidate = pushing(ROUND, 4, 1, 2)
-    good = moved(contact, calm, B, B, Time.CONTINUOUS)
-    assert candidate.find_fault(good) is None
-    assert candidate.find_fault(flying).endswith("in free motion, mode f")
-    # At y = 1 in the air, V' = 2 y (-2 y + 4 d) = 4.
-    for multiplier in (0, 1, 16, 64, 256):
-        fault = replace(candidate, multipliers=(multiplier,)).find_fault(lagging)
-        assert fault.endswith("while the environment lags, mode f")
-    # At (y, delta) = (3/5, 4/5) the force -9 y + delta is negative, and V' = 2 x'(F x + B d).
-    y, delta = Fraction(3, 5), Fraction(4, 5)
-    assert -9 * y + delta < 0 < 2 * y * (-2 * y + Fraction(1, 2)) + 2 * delta * (8 * y)
-
-
-def test_multipliers_for_an_environment_that_could_pull_decide_in_steps():
-    system = pushed(bouncing_in_steps())
-    pulled = replace(system, contact=replace(system.contact, pulls=(matrix([[1, 1]]),)))
-    covered = replace(STEPS, multipliers=(*STEPS.multipliers, 500, 500, 500))
-    assert (covered.find_fault(pulled) is None) == holds(pulled, covered)
-
-
-@pytest.mark.parametrize("where", LAGGING)
-def test_what_lags_in_steps_can_leave_the_set(where):
-    """A state that no disturbance has to push: V rises in one step by more than a twentieth."""
-    system, Q, multipliers = LAGGING[where]
-    columns = (matrix([["1/100"], [0]]),) * 2
-    system = replace(
-        system,
-        channels=(Channel("push", "N", Fraction(1, 1000), columns),),
-        outputs=(Output("force", "N", (matrix([[0, 1]]),)),),
-    )
-    ellipsoid = pushing(Q, 0, "1/50", 10, *multipliers)
-    fault = ellipsoid.find_fault(system)
-    assert fault == f"the ellipsoid can be left {where}"
-    assert not holds(system, ellipsoid)
-    sprung = replace(system, contact=replace(system.contact, pulls=()))
-    assert replace(ellipsoid, multipliers=multipliers[:1]).find_fault(sprung) is None
-
-
-@settings(deadline=None)
-@given(
-    st.lists(st.integers(-8, 8), min_size=4, max_size=4),
-    st.lists(st.integers(-8, 8), min_size=2, max_size=2),
-    st.lists(st.integers(-4, 4), min_size=4, max_size=4),
-    st.lists(st.integers(-6, 6), min_size=3, max_size=3),
-    st.integers(0, 6),
-    st.fractions("1/10", 2),
-    st.fractions("1/2", 4),
-    st.sampled_from(list(Time)),
-)
-def test_against_the_definition(contact, free, columns, Q, multiplier, share, level, time):
-    """The definition in fractions, decided by another elimination."""
-    a, b, c, d = (Fraction(entry, 8) for entry in contact)
-    moves = Fraction(int(time is Time.DISCRETE))
-    B, B_free = ([[Fraction(columns[k], 8)], [Fraction(columns[k + 1], 8)]] for k in (0, 2))
-    pulls = ([[1, 2]],) if time is Time.CONTINUOUS else ()
-    flight = [[Fraction(free[0], 8), 0], [Fraction(free[1], 8), moves]]
-    system = moved([[a, b], [c, d]], flight, B, B_free, time, *pulls)
-    p, q, r = Q
-    candidate = pushing(((p, q), (q, r)), 1, share, level, multiplier)
-    assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 
 # Of three states, with denominators that differ, and nothing symmetric but Q.

@@ -9,13 +9,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from tests.proof.rows import cases, check
 from tests.proof.systems import family, genuine, matrix
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 def test_denominators_without_a_common_one_are_refused():

@@ -14,7 +14,6 @@ from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.saturation import Saturation
-from tests.proof.rows import cases, check
 from tests.proof.systems import (
     cut_off,
     expect,
@@ -25,11 +24,6 @@ from tests.proof.systems import (
     pushed_away_in_steps,
 )
 from tests.proof.truth import holds
-
-
-@pytest.mark.parametrize("case", cases(__file__))
-def test_what_a_row_says(case):
-    check(case)
 
 
 def of_one_state(q, h, rate, level, logs=(8, 4)):

@@ -125,7 +125,6 @@ class Solution:
     forms: list[Array]
     multipliers: Array
     vanishing: list[Array]
-    margin: float  # That they were solved for, of the edges that counted
 
 
 def states_at(drawing: Drawing, node: Node) -> int:

@@ -15,7 +15,6 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
-from nrs_design.search.decay import limit_rate
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import Allowance
 
@@ -83,6 +82,19 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
             return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
     limits = [limit_rate(matrices, system.time) for matrices in families]
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)
+
+
+def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
+    """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius.
+
+    Not a number if the matrices are beyond the range of floating point.
+    """
+    if not np.isfinite(matrices).all():
+        return np.nan
+    eigenvalues = np.linalg.eigvals(matrices)
+    if time is Time.CONTINUOUS:
+        return float(-eigenvalues.real.max())
+    return float(np.abs(eigenvalues).max())
 
 
 def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:

@@ -21,18 +21,17 @@ from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.branches import best_words, round_forms
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidates
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
-from nrs_design.search.decay import limit_rate
 from nrs_design.search.drawing import Drawing, FormCoordinates
-from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.family import Family, limit_rate, stand_ins, to_floats
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graph import Graph
 from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.motions import free_motions, separating_coordinates
 from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rates import POLYNOMIAL, Rates, propose
-from nrs_design.search.rounding import digits
+from nrs_design.search.rounding import digits, round_rate
 from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
 from nrs_design.search.step_graph import StepGraph
@@ -41,7 +40,9 @@ from nrs_design.work import Cost
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
-# The same where stays are enclosed.
+# Share of the slowest decay that is claimed of one state.
+BACK_OFF = Fraction(1999, 2000)
+# Digits where stays are enclosed.
 BITS_OF_STAYS = (12, 32, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
@@ -305,35 +306,34 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
     return (yield from _together(family, coverings, lost=lost))
 
 
-def search_raw(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for all modes in the coordinates of the spec, without balancing."""
-    n = family.system.order
-    raw = FormCoordinates(np.zeros(n, dtype=np.int64), np.eye(n))
-    return (yield from _together(family, coordinates=raw))
-
-
-def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for all modes in coordinates in which their own norms are round."""
+def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes, in kept contact, whatever the arithmetic rounds."""
     return (yield from _together(family))
 
 
 def _together(
-    family: Family,
-    coverings: Sequence[bool] = (False,),
-    *,
-    lost: bool = False,
-    coordinates: FormCoordinates | None = None,
+    family: Family, coverings: Sequence[bool] = (False,), *, lost: bool = False
 ) -> Candidates[FormsOnGraph]:
     """Ask one program for a form for all modes."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     drawing = draw_together(family, 1, lost=lost)
-    if coordinates is not None:
-        drawing = replace(drawing, coordinates=(coordinates,))
     if not drawing.is_finite:
         return OUT_OF_RANGE
-    program, rates = FormsProgram(drawing), Rates(share=0.5)
-    return (yield from propose(program, family, family.limit, rates, coverings))
+    rates = Rates(share=0.5)
+    return (yield from propose(FormsProgram(drawing), family, family.limit, rates, coverings))
+
+
+def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:
+    """Take ``V(x) = x^2``, at a rate computed exactly: modes may be nearer to 1 than floats are."""
+    system = family.system
+    numbers = [mode.A.fractions()[0][0] for mode in system.modes]
+    claimed = BACK_OFF * -max(numbers)
+    if system.time is Time.DISCRETE:
+        claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
+    rate = round_rate(claimed, system.time)
+    yield Candidate(FormsOnGraph((Node(MODES, ((1,),)),), 0, rate))
+    return None
 
 
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:

@@ -50,7 +50,7 @@ LADDER: tuple[Rung, ...] = (
         "one state",
         Method.LMI,
         lambda f: f.may_share_a_function and not f.may_share_an_ellipsoid,
-        _in("common_quadratic", "decide_one_state"),
+        _in("graphs", "decide_one_state"),
     ),
     Rung(
         "conewise quadratic",
@@ -107,7 +107,7 @@ LADDER: tuple[Rung, ...] = (
         "lmi",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_by_lmi"),
+        _in("graphs", "search_by_lmi"),
     ),
     Rung(
         "obstruction",
@@ -115,26 +115,11 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_share_a_function and not f.may_bounce,
         _in("obstruction", "search_obstruction"),
     ),
-    # The solver may have stalled: other coordinates, before giving up on quadratics.
-    Rung(
-        "lmi, raw",
-        Method.LMI,
-        lambda f: f.may_share_an_ellipsoid,
-        _in("graphs", "search_raw"),
-        only_quadratic=True,
-    ),
-    Rung(
-        "lmi, preconditioned",
-        Method.LMI,
-        lambda f: f.may_share_an_ellipsoid,
-        _in("graphs", "search_preconditioned"),
-        only_quadratic=True,
-    ),
     Rung(
         "gradient",
         Method.GRADIENT,
         lambda f: f.may_share_a_function,
-        _in("common_quadratic", "search_by_gradient"),
+        _in("gradient", "search_by_gradient"),
         only_quadratic=True,
     ),
     Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),

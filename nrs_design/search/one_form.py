@@ -11,7 +11,6 @@ are those of the exact check (`nrs_design.proof.steps`). In free motion, Q has n
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -25,8 +24,8 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY
 from nrs_design.search.float_step import FloatStep
 from nrs_design.search.rounding import numerators, unscale
-from nrs_design.search.sdp import Blocks, begin, program_cost, symmetric_basis
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.sdp import Program, stacked, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
@@ -242,17 +241,6 @@ class OneForm:
         """The forms that Q is a sum of."""
         return symmetric_basis(self.order)
 
-    def cost(self, bounds: Sequence[Constraint]) -> Cost:
-        """Predict what a solution takes."""
-        k = self.order * (self.order + 1) // 2
-        count = Counter(name for item in self.conditions for name in item.facts)
-        shared = k + 1 + sum(several > 1 for several in count.values())
-        cones = [(item.M.shape[1], k + 1 + len(item.facts)) for item in self.conditions]
-        cones += [(len(bound.constant), k + 1 + len(bound.multipliers)) for bound in bounds]
-        return program_cost(
-            k + 1 + len(self.scales), shared, [*cones, *[(1, 1)] * len(self.scales)]
-        )
-
     def solve(
         self,
         share: float,
@@ -261,34 +249,34 @@ class OneForm:
         level: float | None = None,
     ) -> FormSolution | None:
         """Minimize the level; or, for a given one, leave as much to spare as possible."""
-        what = f"an ellipsoid of {len(self.conditions)} steps"
-        begun = begin(allowance, self.cost(bounds), what)
-        basis, blocks = self.basis, Blocks()
+        basis = self.basis
         place = {name: len(basis) + i for i, name in enumerate(self.scales)}
         last = len(basis) + len(place)
+        program = Program(last + 1)
 
         def add(
             constant: Array, form: Array, facts: Mapping[str, Array], corner: Array | None
         ) -> None:
-            images = dict(enumerate(form))
-            images |= {place[name]: own / self.scales[name] for name, own in facts.items()}
-            if level is None and corner is not None:
-                images[last] = -corner
-            elif level is not None and corner is not None:
-                images[last] = -np.eye(len(corner))
-                constant = constant + level * corner
-            blocks.add(constant, images)
+            images = [(0, stacked(form))]
+            for name, own in facts.items():
+                images.append((place[name], stacked(own[None] / self.scales[name])))
+            if corner is not None:
+                spared = corner if level is None else np.eye(len(corner))
+                images.append((last, stacked(-spared[None])))
+                constant = constant if level is None else constant + level * corner
+            program.add(constant, images)
 
         for item in self.conditions:
             images = item.images(basis, share)
             add(np.zeros_like(images[0]), images, item.facts, np.zeros_like(images[0]))
         for bound in bounds:
             add(bound.constant, bound.form, bound.multipliers, bound.corner)
+        one = np.ones((1, 1))
         for column in place.values():
-            blocks.add(0.0, {column: np.ones((1, 1))})
+            program.add(0 * one, [(column, one)])
         if level is not None:
-            blocks.add(1.0, {last: -np.ones((1, 1))})
-        reached = blocks.maximize(last + 1, begun)
+            program.add(one, [(last, -one)])
+        reached = program.maximize(allowance)
         # The last unknown is what is left to spare, or the level with its sign changed.
         sign = -1 if level is None else 1
         if reached is None or sign * reached.x[-1] <= 0:

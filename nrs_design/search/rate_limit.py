@@ -10,8 +10,7 @@ from numpy.linalg import LinAlgError
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.branches import best_words
-from nrs_design.search.decay import limit_rate
-from nrs_design.search.family import to_floats
+from nrs_design.search.family import limit_rate, to_floats
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Allowance
 

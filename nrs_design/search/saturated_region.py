@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY, to_floats
-from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.search.sdp import Program, stacked, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -181,7 +181,7 @@ def largest_region(
 def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     """Return the region with the largest start, for the columns g that fit another."""
     n, held = loop.A.shape[1], loop.held
-    basis, size = symmetric_basis(n), np.zeros((1, 1))
+    basis = symmetric_basis(n)
     unknowns = len(basis) + held * n + 1
     S, Y = np.zeros((unknowns, n, n)), np.zeros((unknowns, held, n))
     S[: len(basis)] = basis
@@ -195,9 +195,13 @@ def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
     blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(held)]
-    x = solve_blocks([*blocks, *_decreases(loop, rate, S, Y, near)], loop.allowance)
-    if x is None or x[-1] <= 0:
+    program = Program(unknowns)
+    for constant, images in [*blocks, *_decreases(loop, rate, S, Y, near)]:
+        program.add(constant, [(0, stacked(images))])
+    reached = program.maximize(loop.allowance)
+    if reached is None or reached.x[-1] <= 0:
         return None
+    x = reached.x
     found, rows = np.tensordot(x, S, axes=1), np.tensordot(x, Y, axes=1)
     return Region(np.asarray(found), rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
 

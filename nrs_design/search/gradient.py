@@ -20,7 +20,7 @@ from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
-from nrs_design.search.graphs import draw_together
+from nrs_design.search.graphs import draw_balanced
 from nrs_design.search.rates import at_own_rate
 from nrs_design.search.rounding import digits, position_of, rate_at
 from nrs_design.work import Allowance, NotAffordableError
@@ -67,9 +67,8 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
 
 
 def _roundings(family: Family, Q: Matrices, words: str) -> Iterator[Candidate[FormsOnGraph]]:
-    program = FormsProgram(draw_together(family, 1))
-    T, none = program.drawing.coordinates[0].T, np.zeros((1, 1))
-    solution = Solution([T.T @ Q @ T], np.zeros(0), [none] * len(program.edges))
+    program = FormsProgram(draw_balanced(family))
+    solution = Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(program.edges))
     yield from at_own_rate(program, solution, family, digits(), words)
 
 

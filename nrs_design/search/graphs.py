@@ -300,24 +300,23 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
 
     Where the arithmetic rounds, forms that cover that are tried before others.
     """
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
     lost = family.system.contact is not None
     covered = (True,) if family.system.roundings else ()
     coverings = (*covered, False) if lost or not covered else covered
-    return (yield from _together(family, coverings, lost=lost))
+    return (yield from _together(family, draw_together(family, 1, lost=lost), coverings))
 
 
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all modes, in kept contact, whatever the arithmetic rounds."""
-    return (yield from _together(family))
+    return (yield from _together(family, draw_balanced(family), (False,)))
 
 
 def _together(
-    family: Family, coverings: Sequence[bool] = (False,), *, lost: bool = False
+    family: Family, drawing: Drawing, coverings: Sequence[bool]
 ) -> Candidates[FormsOnGraph]:
     """Ask one program for a form for all modes."""
-    if not np.isfinite(family.limit):
-        return OUT_OF_RANGE
-    drawing = draw_together(family, 1, lost=lost)
     if not drawing.is_finite:
         return OUT_OF_RANGE
     rates = Rates(share=0.5)
@@ -371,6 +370,12 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(family))
     return Drawing(system, graph, (0,) * len(places), (own,))
+
+
+def draw_balanced(family: Family) -> Drawing:
+    """Draw a node for all modes, in balanced states, which is nearer to the best of few modes."""
+    own = FormCoordinates(family.exponents, np.eye(len(family.exponents)))
+    return Drawing(family.system, graph_of([MODES], 0), (0,), (own,))
 
 
 def graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnGraph:

@@ -182,5 +182,5 @@ def _bisected(
             found = shown(middle)
         except NotAffordableError:
             break
-        low, high = (low, middle) if found is None else (max(middle, min(found, high)), high)
+        low, high = (low, middle) if found is None else (max(middle, min(found, 1.0)), high)
     return low

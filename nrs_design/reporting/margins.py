@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit as shown_unit
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.loop_margin import Bracket
+    from nrs_design.search.margin import Bracket
     from nrs_design.spec import Spec
     from nrs_design.spec.misses import MissRuleSpec
 
@@ -44,7 +45,7 @@ def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
     dwell = margins.dwell
     if dwell is None:
         return
-    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    proved = f"no proof up to {LONGEST_DWELL} s, where the search ended"
     if dwell.proved is not None and dwell.proof is not None:
         proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
     refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"

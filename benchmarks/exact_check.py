@@ -10,7 +10,6 @@ from benchmarks.measure import Comparison, Finding, Size, time_side_by_side
 from benchmarks.sylvester import check_apart, proved_family
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.fast_check import find_fault
 
 ORDERS, QUICK_ORDERS = (6, 8, 13, 18, 21), (6, 8, 13)
 TARGET = 500.0
@@ -30,7 +29,7 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
 
 def _check_pair(n: int) -> list[Comparison]:
     system, evidence = proved_family(n, 2)
-    (ours,), (fault,) = time_side_by_side(9, lambda: find_fault(evidence, system))
+    (ours,), (fault,) = time_side_by_side(9, lambda: evidence.find_fault(system))
     comparisons = []
     for ground_types, peer in PEERS.items():
         accepted, theirs = check_apart(n, ground_types)
@@ -52,5 +51,5 @@ def _check_family(modes: int, repeats: int) -> Finding:
 
 def _time_check(system: SwitchedSystem, evidence: FormsOnGraph) -> float:
     start = perf_counter()
-    assert find_fault(evidence, system) is None
+    assert evidence.find_fault(system) is None
     return perf_counter() - start

@@ -101,7 +101,7 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
         known = found.evidence.proved_rate(system), found.method
         bounds = replace(bounds, upper=known[0], method=known[1])
     limits = replace(limits, budget=budget, more=False)
-    if graph is not None and bounds.lower is not None and Facts.of(system).is_of_words:
+    if graph is not None and bounds.lower is not None and Facts.of(system).is_of_words():
         with floats_in_silence():
             bounds = _with_memory(system, graph, bounds, limits)
     return _without_memory(system, bounds, limits) if bounds.upper is None else bounds

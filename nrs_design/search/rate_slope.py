@@ -61,8 +61,8 @@ class RateSlope:
 def may_have_slope(system: SwitchedSystem) -> bool:
     """Tell whether one form for all modes is what a proof of a system could be."""
     facts = Facts.of(system)
-    timed = facts.is_continuous or system.sample_time is not None
-    return facts.may_share_an_ellipsoid and system.clock is None and timed
+    timed = facts.is_continuous() or system.sample_time is not None
+    return facts.may_share_an_ellipsoid() and system.clock is None and timed
 
 
 def rate_slope(

@@ -52,7 +52,7 @@ PRINTED = {
     "nrs_design.design.linear_parts",
     "nrs_design.design.passivity",
     "nrs_design.search.loop_margin",
-    "nrs_design.search.method_run",
+    "nrs_design.search.comparison",
 }
 
 
@@ -254,7 +254,7 @@ def test_a_report_assembles_and_searches_nothing():
         "nrs_design.search.certification",
         "nrs_design.search.gradient_settings",
         "nrs_design.search.loop_margin",
-        "nrs_design.search.method_run",
+        "nrs_design.search.comparison",
     }
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.search.balance import round_coordinates
-from nrs_design.search.flows import spectral_radii
+from nrs_design.search.graph import spectral_radii
 from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Allowance, Cost
 

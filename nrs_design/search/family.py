@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, scale_states
+from nrs_design.search.balance import balance, mean_norm, scale_states, separating
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import Allowance
 
 # Modes that differ by less, relative to their largest entries, are nearly the same.
 NEARLY = 1e-12
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,3 +138,15 @@ def floats_in_silence() -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
+
+
+def free_motions(family: Family) -> Array:
+    """Return the free modes in the coordinates of a family, shape (f, n, n)."""
+    d = family.exponents
+    free = to_floats([mode.A for mode in family.system.free]).reshape(-1, len(d), len(d))
+    return scale_states(free, d)
+
+
+def separating_coordinates(family: Family) -> Array:
+    """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""
+    return separating(mean_norm(family.matrices, family.system.time))

@@ -21,7 +21,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states, time_unit
 from nrs_design.search.drawing import Drawing, Inequality, Solution, distinct, inequalities
 from nrs_design.search.forms_rounding import rounded_forms
-from nrs_design.search.lifted import vanishing_basis
+from nrs_design.search.polynomial import vanishing_basis
 from nrs_design.search.rounding import rate_at
 from nrs_design.search.sdp import Program, congruence, stacked, unpack
 from nrs_design.work import Allowance

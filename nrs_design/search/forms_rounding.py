@@ -15,9 +15,9 @@ from nrs_design.proof.evidence.graph import Multiplier, Node, lifted
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Step
 from nrs_design.search.drawing import Drawing, Fact, Inequality, Solution, entries_of, states_at
-from nrs_design.search.lifted import make_vanish, products
-from nrs_design.search.pieces import enough_pieces
+from nrs_design.search.polynomial import make_vanish, products
 from nrs_design.search.rounding import numerators, round_form, round_rate
+from nrs_design.search.stays import enough_pieces
 
 Array = NDArray[np.float64]
 

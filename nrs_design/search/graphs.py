@@ -24,12 +24,23 @@ from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.drawing import Drawing, FormCoordinates
-from nrs_design.search.family import Family, limit_rate, stand_ins, to_floats
+from nrs_design.search.family import (
+    Family,
+    free_motions,
+    limit_rate,
+    separating_coordinates,
+    stand_ins,
+    to_floats,
+)
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graph import Graph
-from nrs_design.search.lifted import monomial_weights
-from nrs_design.search.motions import free_motions, separating_coordinates
-from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
+from nrs_design.search.polynomial import (
+    conewise_cost,
+    family_cost,
+    functions_cost,
+    monomial_weights,
+    work_of_checks,
+)
 from nrs_design.search.rates import POLYNOMIAL, Rates, propose
 from nrs_design.search.rounding import digits, round_rate
 from nrs_design.search.rounds import turns_graph

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Acting, Step, steps_of
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.drawing import FloatStep
 from nrs_design.search.family import NEARLY
-from nrs_design.search.float_step import FloatStep
 from nrs_design.search.rounding import numerators, unscale
 from nrs_design.search.sdp import Program, stacked, symmetric_basis
 from nrs_design.work import Allowance

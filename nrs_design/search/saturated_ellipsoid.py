@@ -24,8 +24,7 @@ from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.motions import separating_coordinates
+from nrs_design.search.family import Family, separating_coordinates, stand_ins, to_floats
 from nrs_design.search.one_form import (
     Constraint,
     FormSolution,

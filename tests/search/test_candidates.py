@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from nrs_design.search.common_quadratic import decide_one_state, search_by_gradient, search_by_lmi
 
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search import common_quadratic
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
-from nrs_design.search.common_quadratic import decide_one_state, search_by_gradient, search_by_lmi
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.graphs import search_polynomial, search_preconditioned, search_raw
 from nrs_design.search.mixture import search_mixture

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from nrs_design.search.common_quadratic import CommonQuadratic, search_by_lmi
 
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
-from nrs_design.search.common_quadratic import CommonQuadratic, search_by_lmi
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.rounding import digits
 from tests.support import dayawansa_martin, family, holds

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from nrs_design.search.decay import limit_rate, rate_of
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.decay import limit_rate, rate_of
 
 
 def test_slowest_mode_limits_the_rate():

@@ -7,11 +7,6 @@ from itertools import islice
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
-from nrs_design.proof.evidence import read_evidence
-from nrs_design.proof.exact import MAX_WORK, is_positive_definite, multiply
-from nrs_design.proof.mode import Time
-from nrs_design.search import fast_check
 from nrs_design.search.fast_check import (
     CLEAR_BITS,
     PACKED_ORDER,
@@ -19,6 +14,11 @@ from nrs_design.search.fast_check import (
     is_clearly_positive_definite,
     multiply_packed,
 )
+
+from nrs_design.proof.evidence import read_evidence
+from nrs_design.proof.exact import MAX_WORK, is_positive_definite, multiply
+from nrs_design.proof.mode import Time
+from nrs_design.search import fast_check
 from tests.proof.graphs import common_quadratic
 from tests.proof.systems import SYSTEMS, family, genuine
 from tests.proof.tamper import mutations

@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+from nrs_design.search.cones import FormsCones
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import forms
-from nrs_design.search.cones import FormsCones
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (

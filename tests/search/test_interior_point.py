@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-
 from nrs_design.search.cones import LARGEST_MULTIPLIER, ConeKind, FormsCones, FormTerm
 from nrs_design.search.interior_point import maximize
+
 from nrs_design.search.sdp import pack, unpack
 
 RNG = np.random.default_rng(8)

@@ -3,10 +3,10 @@
 import cvxpy as cp
 import numpy as np
 import pytest
+from nrs_design.search.lmi import decreases, find_common_quadratic, margins
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
-from nrs_design.search.lmi import decreases, find_common_quadratic, margins
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
 

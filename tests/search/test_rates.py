@@ -4,11 +4,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
+from nrs_design.search.lmi import find_common_quadratic
 
 from nrs_design.proof.mode import Time
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.family import Family
-from nrs_design.search.lmi import find_common_quadratic
 from nrs_design.search.rates import (
     NEAR_OF_DEAR,
     OF_DEAR,

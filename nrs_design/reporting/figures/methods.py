@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from nrs_design.search.method_run import History, MethodRun
+    from nrs_design.search.comparison import History, MethodRun
 
 COLUMNS = ("method", "coordinates", "order", "outcome", "updates", "proved rate", "condition of Q")
 

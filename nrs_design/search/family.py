@@ -85,6 +85,20 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)
 
 
+def rate_limit(system: SwitchedSystem) -> float | None:
+    """Return a rate that no proof can beat: that of the slowest mode that need never be left.
+
+    In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
+    """
+    parts = [system.only(frozenset(names)) for names in system.cases] or [system]
+    modes = [part.lasting_modes() for part in parts]
+    if not all(modes):
+        return None
+    limits = [limit_rate(to_floats([m.A]), system.time) for part in modes for m in part]
+    limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
+    return limit if np.isfinite(limits).all() else None
+
+
 def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
     """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius.
 

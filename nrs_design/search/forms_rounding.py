@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,13 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Multiplier, Node, lifted
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Step
-from nrs_design.search.drawing import Drawing, Fact, Inequality, Solution, entries_of, states_at
+from nrs_design.search.drawing import Fact, Solution, entries_of, states_at
 from nrs_design.search.polynomial import make_vanish, products
 from nrs_design.search.rounding import numerators, round_form, round_rate
 from nrs_design.search.stays import enough_pieces
+
+if TYPE_CHECKING:
+    from nrs_design.search.forms import FormsProgram
 
 Array = NDArray[np.float64]
 
@@ -25,26 +28,8 @@ Array = NDArray[np.float64]
 LOST_TO_ERRORS = 1.25
 
 
-class SolvedProgram(Protocol):
-    """What is asked of the program that a solution is of."""
-
-    drawing: Drawing
-    scales: dict[Fact, float]
-    unit: int
-    time: Time
-    degree: int
-    every: list[Inequality]
-    stands_for: list[int]
-
-    def margins(self, solution: Solution, rate: float) -> Array:
-        """Return the smallest eigenvalue of every inequality."""
-
-    def variables(self, size: int) -> int:
-        """Return the number of states of so many monomials."""
-
-
 def rounded_forms(
-    program: SolvedProgram,
+    program: FormsProgram,
     solution: Solution,
     claim: Fraction,
     digits: Sequence[int],
@@ -109,7 +94,7 @@ def rounded_forms(
 
 
 def _round_vanishing(
-    program: SolvedProgram, graph: FormsOnGraph, solution: Solution, bits: int, top: int
+    program: FormsProgram, graph: FormsOnGraph, solution: Solution, bits: int, top: int
 ) -> tuple[tuple[tuple[int, ...], ...], ...]:
     """Round forms so that they vanish exactly, in the units of the exact inequalities."""
     found, timed = [], [k for k, edge in enumerate(program.every) if edge.is_strict]
@@ -126,7 +111,7 @@ def _round_vanishing(
 
 
 def _allow_for(
-    program: SolvedProgram, solution: Solution, claim: Fraction
+    program: FormsProgram, solution: Solution, claim: Fraction
 ) -> tuple[dict[Fact, float], Fraction]:
     """Return multipliers of errors, and what is left of a rate if a form loses what they take.
 

@@ -124,7 +124,7 @@ class BoundProgram:
         T = np.eye(n + 1)
         T[1:, 1:] = frame.T
         disturbed = StepUnits.of(T, [1.0] * len(item.channels), len(item.roundings))
-        own = disturbed.balanced(steps).without_weak(steps, len(item.channels))
+        own = disturbed.balanced(steps)
         ends = {
             name: sign * np.array(row.floats()[0]) @ frame.T / frame.level
             for name, row, sign in item.ends(system)

@@ -31,10 +31,6 @@ Array = NDArray[np.float64]
 
 BITS = (30, 40, 50, 60)
 SHARE = "share"
-# What is less in a product, relative to it, is no factor of it.
-FELT = 1e-2
-# How much less than the others a disturbance pushes that is weak.
-WEAK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,6 @@ class StepUnits:
 
     T: Array  # Shape (n, n). Its leading block is that of free motion.
     others: Array  # Units of the disturbances, then of the errors
-    weak: tuple[int, ...] = ()  # Disturbances that do next to nothing: their products are left out
 
     @classmethod
     def of(cls, T: Array, disturbances: Sequence[float], errors: int) -> StepUnits:
@@ -68,15 +63,6 @@ class StepUnits:
         others[len(others) - count :] = np.sqrt(units)
         return replace(self, others=others)
 
-    def without_weak(self, steps: Iterable[Step], disturbances: int) -> StepUnits:
-        """Leave out products of disturbances that do next to nothing in contact."""
-        pushed = np.zeros(disturbances)
-        for step in steps:
-            if step.source == CONTACT:
-                columns = StepInequality.of(step, self).M[:, step.states :][:, :disturbances]
-                pushed = np.maximum(pushed, np.abs(columns).max(axis=0))
-        return replace(self, weak=tuple(np.flatnonzero(pushed < WEAK * pushed.max())))
-
 
 @dataclass(frozen=True)
 class StepInequality:
@@ -86,7 +72,6 @@ class StepInequality:
     states: int
     M: Array
     facts: dict[str, Array]  # What each multiplier adds
-    names: tuple[str, ...]  # Of all multipliers; those without a fact are zero
     errors: tuple[tuple[float, float], ...]  # How large: what each does, and what it comes from
     is_flow: bool
 
@@ -108,9 +93,8 @@ class StepInequality:
             row, e = own.rows(q, n), own.rows(unit[i], n)
             facts[name] = np.outer(e, e) - np.outer(row, row)
             errors.append((float(np.linalg.norm(M[:, i])), float(np.linalg.norm(row))))
-        needed = {name: form for name, form in facts.items() if _is_needed(form, n, own.weak)}
-        kind = step.source, step.target, after, len(needed), step.is_flow
-        return cls(kind, n, M, needed, tuple(facts), tuple(errors), step.is_flow)
+        kind = step.source, step.target, after, len(facts), step.is_flow
+        return cls(kind, n, M, facts, tuple(errors), step.is_flow)
 
     def images(self, basis: Array, share: float) -> Array:
         """Return what it makes of every form of a basis."""
@@ -135,12 +119,6 @@ class StepInequality:
 
 def _both(left: Array, right: Array) -> Array:
     return np.outer(left, right) + np.outer(right, left)
-
-
-def _is_needed(form: Array, states: int, weak: Sequence[int]) -> bool:
-    """Tell whether a weak disturbance is no factor; its square is needed whatever it does."""
-    felt = (states + k for k in weak if np.abs(form[states + k]).max() > FELT * np.abs(form).max())
-    return all(form[k, k] for k in felt)
 
 
 def plain_steps(
@@ -228,7 +206,7 @@ class OneForm:
             if like is None:
                 kept.append(condition)
                 like = condition
-            for name, other in zip(condition.names, like.names, strict=True):
+            for name, other in zip(condition.facts, like.facts, strict=True):
                 stands.setdefault(name, other)
         for condition in kept:
             for name, form in condition.facts.items():

@@ -19,7 +19,7 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
+from nrs_design.search.balance import balance, round_coordinates, scale_states, separating
 from nrs_design.search.branches import best_words, round_forms
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
@@ -27,7 +27,6 @@ from nrs_design.search.drawing import Drawing, FormCoordinates
 from nrs_design.search.family import (
     Family,
     free_motions,
-    limit_rate,
     separating_coordinates,
     stand_ins,
     to_floats,
@@ -197,35 +196,14 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     """
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
     apart = round_coordinates if family.system.contact is None else separating
-    if not clock.is_round:
-        graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
-        yield from map(apart, round_forms(graph))
-        return
-    each = [means[min(step, 1)] for step in range(clock.length)]
-    n = family.system.order
-    whole = np.eye(n)
-    for mean in each:
-        whole = mean @ whole
-    radius = float(np.abs(np.linalg.eigvals(whole)).max())
-    share = min(1.0, (KEPT / radius) ** (1 / len(each))) if radius > 0 else 1.0
-    # In coordinates of like size, all is counted at every step.
-    form, forms = own_norm(share ** len(each) * whole, Time.DISCRETE), list[Array]()
-    for mean in reversed(each * 2):
-        form = np.eye(n) / len(each) + share**2 * mean.T @ form @ mean
-        forms.append(form)
-    yield from map(apart, forms[: -len(each) - 1 : -1])
+    graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
+    yield from map(apart, round_forms(graph))
 
 
 def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the slowest round of like modes, or of the worst word."""
-    if not clock.is_round:
-        graph = turns_graph(family, clock)
-        words = best_words(graph, family.allowance.part(WORDS))
-        return max((growth for _, growth in words), default=0.0)
-    first, others = _turns(family, clock)
-    rounds = [np.linalg.matrix_power(B, clock.length - 1) @ A for A in first for B in others]
-    slowest = max(limit_rate(whole[None], Time.DISCRETE) for whole in rounds)
-    return float(slowest ** (1 / clock.length))
+    """Return the contraction per step of the worst word that is found."""
+    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
+    return max((growth for _, growth in words), default=0.0)
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:

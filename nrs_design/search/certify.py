@@ -109,7 +109,7 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
 
     Floating point suspects, exact tests decide. Empty for any contact, None if none grows.
     """
-    from nrs_design.search.rounds import search_rounds
+    from nrs_design.search.period import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
     with floats_in_silence():

@@ -112,25 +112,28 @@ def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
     return float(np.abs(eigenvalues).max())
 
 
-def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
-    """Return for each name the first one with nearly the same matrix."""
+def nearly_same(stack: NDArray[np.float64]) -> list[int]:
+    """Return for each entry of a stack the number of the first that floats hardly tell from it."""
     kept: list[int] = []
-    found: dict[str, str] = {}
-    for i, A in enumerate(matrices):
-        near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
-        k = next(near, i)
+    found: list[int] = []
+    for i, one in enumerate(stack):
+        near = NEARLY * np.abs(one).max()
+        k = next((k for k in kept if np.abs(stack[k] - one).max() <= near), i)
         if k == i:
             kept.append(i)
-        found[names[i]] = names[k]
+        found.append(k)
     return found
+
+
+def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
+    """Return for each name the first one with nearly the same matrix."""
+    return {name: names[k] for name, k in zip(names, nearly_same(matrices), strict=True)}
 
 
 def distinct_modes(modes: Sequence[Mode]) -> list[tuple[Mode, NDArray[np.float64]]]:
     """Return modes in floating point, without those that differ by an enclosed number."""
     matrices = to_floats([mode.A for mode in modes])
-    named = stand_ins([mode.name for mode in modes], matrices)
-    pairs = zip(modes, matrices, strict=True)
-    return [(mode, A) for mode, A in pairs if named[mode.name] == mode.name]
+    return [(modes[k], matrices[k]) for k in dict.fromkeys(nearly_same(matrices))]
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:

@@ -20,9 +20,8 @@ from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, round_coordinates, scale_states, separating
-from nrs_design.search.branches import best_words, round_forms
+from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.drawing import Drawing, FormCoordinates
 from nrs_design.search.family import (
     Family,
@@ -32,7 +31,7 @@ from nrs_design.search.family import (
     to_floats,
 )
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.graph import Graph
+from nrs_design.search.graph import Graph, growing_cycles
 from nrs_design.search.polynomial import (
     conewise_cost,
     family_cost,
@@ -42,9 +41,7 @@ from nrs_design.search.polynomial import (
 )
 from nrs_design.search.rates import POLYNOMIAL, Rates, propose
 from nrs_design.search.rounding import digits, round_rate
-from nrs_design.search.rounds import turns_graph
 from nrs_design.search.stays import round_stays
-from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost
 
 Array = NDArray[np.float64]

@@ -50,7 +50,7 @@ LADDER: tuple[Rung, ...] = (
         _in("graphs", "search_periodic_quadratic"),
         clocked=True,
     ),
-    Rung("rounds", Method.PERIOD, _always, _in("rounds", "search_rounds"), clocked=True),
+    Rung("rounds", Method.PERIOD, _always, _in("period", "search_rounds"), clocked=True),
     Rung("suspicious modes", None, _uniform, _in("unstable_mode", "examine_suspicious_modes")),
     Rung(
         "one state",
@@ -132,7 +132,7 @@ LADDER: tuple[Rung, ...] = (
         "words in the norms of forms",
         Method.PERIOD,
         Facts.is_of_words,
-        _in("extremal_words", "search_extremal_words"),
+        _in("memory", "search_extremal_words"),
     ),
     Rung(
         "quartic with a memory",
@@ -147,7 +147,7 @@ LADDER: tuple[Rung, ...] = (
         "mixture",
         Method.MIXTURE,
         lambda f: f.system.switching.is_arbitrary and f.is_continuous(),
-        _in("mixture", "search_mixture"),
+        _in("unstable_value", "search_mixture"),
     ),
     Rung(
         "polynomial",

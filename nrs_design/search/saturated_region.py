@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.family import NEARLY, to_floats
+from nrs_design.search.family import nearly_same, to_floats
 from nrs_design.search.sdp import Program, stacked, symmetric_basis
 from nrs_design.work import Allowance
 
@@ -67,7 +67,8 @@ class SaturatingLoop:
         starts = to_floats(saturation.start.states)[:, :, 0]
         groups = (0,) * len(A)
         if system.time is Time.DISCRETE:
-            groups = _alike(np.concatenate([row[:, :n] for row in rows], axis=1))
+            same = nearly_same(np.concatenate([row[:, :n] for row in rows], axis=1))
+            groups = tuple(sorted({*same}).index(k) for k in same)
         return cls(system.time, A, len(free), columns, tuple(rows), starts, groups, allowance)
 
     @property
@@ -135,20 +136,6 @@ class SaturatingLoop:
     def is_free(self, k: int) -> bool:
         """Tell whether a mode is one of free motion."""
         return k >= len(self.A) - self.free
-
-
-def _alike(rows: Array) -> tuple[int, ...]:
-    """Return a number for each row, one for those that floating point hardly tells apart."""
-    kept: list[Array] = []
-    found = []
-    for row in rows:
-        near = NEARLY * np.abs(rows).max()
-        k = next((k for k, other in enumerate(kept) if np.abs(other - row).max() <= near), None)
-        if k is None:
-            k = len(kept)
-            kept.append(row)
-        found.append(k)
-    return tuple(found)
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from nrs_design.search import common_quadratic
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.graphs import search_polynomial, search_preconditioned, search_raw
-from nrs_design.search.mixture import search_mixture
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from nrs_design.search.unstable_value import search_mixture
 from nrs_design.work import Allowance, NotAffordableError
 from tests.search.support import outcome
 from tests.support import dayawansa_martin, family, holds

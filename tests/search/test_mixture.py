@@ -9,7 +9,7 @@ from nrs_design.search import mixture
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.family import Family
-from nrs_design.search.mixture import search_mixture
+from nrs_design.search.unstable_value import search_mixture
 from nrs_design.work import Allowance
 from tests.proof.systems import branicky, dayawansa_martin, family, shears
 from tests.proof.truth import holds

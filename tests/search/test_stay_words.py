@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.search.graph import Graph
-from nrs_design.search.stay_words import stay_words
+from nrs_design.search.period import stay_words
 from nrs_design.work import Allowance
 from tests.literature.timed_loop import timed
 

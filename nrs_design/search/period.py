@@ -14,7 +14,6 @@ from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.branches import MOST_EDGES, StepGraph, best_words, turns_graph
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
@@ -25,16 +24,10 @@ from nrs_design.work import Allowance, Cost
 Array = NDArray[np.float64]
 Signal = tuple[Cycle, Array]
 
-GREEDY_STEPS = 3000
-GREEDY_PERIODS = (2, 3, 4, 6, 8)
 FEWEST_BITS = 8
-# Longer cycles are not tried with other times in a second round.
-MAX_DOUBLED = 8
-# About so many times are looked at to refine those of one cycle; work for each jump of each look,
-# and for each mode in each step of a greedy signal.
+# About so many times are looked at to refine those of one cycle; work for each jump of each look.
 LOOKS = 600
 PER_LOOK = 4e-5
-PER_GREEDY = 8e-6
 # Share of what is left for words of single steps, or of stays on a grid.
 WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
@@ -55,7 +48,9 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
         system = system.with_modes(few, system.states, system.switching)
         matrices = matrices[kept]
     if system.time is Time.DISCRETE:
-        yield from _words(system, matrices, allowance.part(WORDS))
+        if (steps := StepGraph.of(system, matrices)) is not None:
+            for word, growth in best_words(steps, allowance.part(WORDS), 1.0):
+                yield from powers(system, *steps.sequence(word), growth ** len(word))
         return NOTHING_GROWS
     graph = Graph.of(system, matrices)
     for cycle, times in _signals(system, graph, allowance):
@@ -65,25 +60,10 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
     return NOTHING_GROWS
 
 
-def _words(
-    system: SwitchedSystem, matrices: Array, allowance: Allowance
-) -> Iterator[Candidate[GrowingSequence]]:
-    """Yield words of single steps that grow, in discrete time."""
-    graph = StepGraph.of(system, matrices)
-    if graph is None:
-        return
-    for word, growth in best_words(graph, allowance, 1.0):
-        steps, edges = graph.sequence(word)
-        yield from powers(system, steps, edges, growth ** len(word))
-
-
 def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that grow in floating point."""
-    greedy: Iterator[Signal] = iter(())
-    if system.switching.is_arbitrary:
-        greedy = _greedy_signals(graph, allowance)
     words = stay_words(graph, allowance.part(WORDS))
-    for cycle, start in chain(words, _twice(growing_cycles(graph, allowance)), greedy):
+    for cycle, start in chain(words, growing_cycles(graph, allowance)):
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
             yield cycle, times
@@ -92,40 +72,6 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
         better = _refined(graph, cycle, times)
         if graph.growth(cycle, better) > 0:
             yield cycle, better
-
-
-def _twice(cycles: Iterator[Signal]) -> Iterator[Signal]:
-    """Yield cycles, and short ones once more with two rounds of different times."""
-    for cycle, times in cycles:
-        yield cycle, times
-        if len(cycle) <= MAX_DOUBLED:
-            yield cycle + cycle, np.concatenate([times * 1.2, times * 0.8])
-
-
-def _greedy_signals(graph: Graph, allowance: Allowance) -> Iterator[Signal]:
-    """Yield signals with more steps: what an adversary settles into that always picks the worst.
-
-    It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
-    are taken as a period.
-    """
-    matrices = graph.matrices
-    allowance.charge(PER_GREEDY * GREEDY_STEPS * len(matrices))
-    inverse = np.linalg.inv(mean_norm_coordinates(matrices, Time.CONTINUOUS))
-    step = 0.05 / float(np.abs(np.linalg.eigvals(matrices)).max())
-    transitions = [graph.flow(k, np.array(step)).real for k in range(len(matrices))]
-    x, chosen = inverse[0] + 0.1, []
-    for _ in range(GREEDY_STEPS):
-        images = [E @ x for E in transitions]
-        chosen.append(int(np.argmax([np.linalg.norm(inverse @ y) for y in images])))
-        x = images[chosen[-1]] / np.linalg.norm(images[chosen[-1]])
-    runs = [(mode, len(list(group))) for mode, group in groupby(chosen)][1:-1]
-    between = {(jump.source, jump.target): k for k, jump in enumerate(graph.jumps)}
-    for length in GREEDY_PERIODS:
-        modes = [mode for mode, _ in runs[-length:]]
-        switches = list(zip(modes, (*modes[1:], *modes[:1]), strict=True))
-        if len(modes) == length and set(switches) <= between.keys():
-            counts = np.array([count for _, count in runs[-length:]], dtype=float)
-            yield tuple(between[switch] for switch in switches), step * counts
 
 
 def _refined(graph: Graph, cycle: Cycle, times: Array) -> Array:

@@ -16,7 +16,7 @@ from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, round_form, round_matrix
-from nrs_design.search.sdp import Program, stacked, symmetric_basis
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -84,15 +84,15 @@ class _Program:
         basis = symmetric_basis(n)
         size, square = len(basis), n * n
         unknowns = corners * size + 2 * sets * square + 1
-        program, zero = Program(unknowns), np.zeros((2 * n, 2 * n))
+        program, zero = SemidefiniteProgram(unknowns), np.zeros((2 * n, 2 * n))
         for k in range(corners):
             program.add(np.eye(n), [(k * size, -np.eye(size))])
-        functions = stacked(self._of_functions(basis, rate))
-        margin = unknowns - 1, stacked(-np.eye(2 * n)[None])
+        functions = packed_columns(self._of_functions(basis, rate))
+        margin = unknowns - 1, packed_columns(-np.eye(2 * n)[None])
         for k in range(sets):
             at = corners * size + 2 * k * square
             for v, A in enumerate(self.modes[k]):
-                multipliers = stacked(_of_multipliers(A))
+                multipliers = packed_columns(_of_multipliers(A))
                 program.add(zero, [(v * size, functions), (at, multipliers), margin])
         found = program.maximize(allowance)
         if found is None or found.x[-1] <= 0:

@@ -15,15 +15,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import Multiplier, Node, lifted
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states, time_unit
-from nrs_design.search.drawing import Drawing, Inequality, Solution, distinct, inequalities
-from nrs_design.search.forms_rounding import rounded_forms
-from nrs_design.search.polynomial import vanishing_basis
-from nrs_design.search.rounding import rate_at
-from nrs_design.search.sdp import Program, congruence, stacked, unpack
+from nrs_design.search.drawing import (
+    Drawing,
+    Fact,
+    Inequality,
+    Solution,
+    distinct,
+    entries_of,
+    inequalities,
+    states_at,
+)
+from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
+from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, packed_congruence, unpack
+from nrs_design.search.stays import enough_pieces
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -39,6 +50,8 @@ LARGEST_MULTIPLIER = 64.0
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
+# What is rounded takes a little more than in the first order.
+LOST_TO_ERRORS = 1.25
 
 
 @dataclass(frozen=True)
@@ -141,15 +154,15 @@ class FormsProgram:
         """Where the unknowns of each form begin, and behind them the multipliers."""
         return [0, *(int(end) for end in np.cumsum([n * (n + 1) // 2 for n in self.sizes]))]
 
-    def _program(self, active: Sequence[int], rate: float) -> Program:
+    def _program(self, active: Sequence[int], rate: float) -> SemidefiniteProgram:
         """State the inequalities of some edges at a rate, which are the last blocks."""
         starts, place = self._starts, {fact: k for k, fact in enumerate(self.scales)}
         free = starts[-1] + len(place)
         last = free + sum(len(self._vanishing[k]) for k in active)
-        program, one = Program(last + 1), np.ones((1, 1))
+        program, one = SemidefiniteProgram(last + 1), np.ones((1, 1))
         for first, n in zip(starts, self.sizes, strict=False):
             form, identity = np.eye(n * (n + 1) // 2), np.eye(n)
-            program.add(0 * identity, [(first, form), (last, stacked(-identity[None]))])
+            program.add(0 * identity, [(first, form), (last, packed_columns(-identity[None]))])
             program.add(identity, [(first, -form)])
         for k in range(starts[-1], free):
             program.add(0 * one, [(k, one)])
@@ -164,15 +177,20 @@ class FormsProgram:
             before, after = starts[edge.before], starts[edge.after]
             if edge.is_flow:
                 N = -np.ldexp(M, self.unit) - weight / 2 * E
-                images = [(before, congruence(E, N) + congruence(N, E))]
+                images = [(before, packed_congruence(E, N) + packed_congruence(N, E))]
             else:
-                images = [(before, congruence(E, E)), (after, congruence(-weight * M, M))]
-            images += [(starts[-1] + place[fact], stacked(own[None])) for fact, own in edge.facts]
+                images = [
+                    (before, packed_congruence(E, E)),
+                    (after, packed_congruence(-weight * M, M)),
+                ]
+            images += [
+                (starts[-1] + place[fact], packed_columns(own[None])) for fact, own in edge.facts
+            ]
             if len(vanishing := self._vanishing[k]):
-                images.append((free, stacked(vanishing)))
+                images.append((free, packed_columns(vanishing)))
                 free += len(vanishing)
             if edge.is_strict:
-                images.append((last, stacked(-np.eye(edge.size)[None])))
+                images.append((last, packed_columns(-np.eye(edge.size)[None])))
             program.add(np.zeros((edge.size, edge.size)), images)
         return program
 
@@ -290,3 +308,130 @@ class FormsProgram:
 def _spaced(count: int, few: int) -> list[int]:
     """Return so many of the first numbers, at about equal distances."""
     return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
+
+
+def rounded_forms(
+    program: FormsProgram,
+    solution: Solution,
+    claim: Fraction,
+    digits: Sequence[int],
+    *,
+    errors: bool = False,
+) -> Iterator[FormsOnGraph]:
+    """Yield roundings of all forms to integers over one denominator.
+
+    The claimed rate holds for the solution in floating point. `errors`: errors that were not
+    solved for are covered, at a rate that leaves room.
+    """
+    drawing, coordinates = program.drawing, program.drawing.coordinates
+    inverses = [np.linalg.inv(one.T) for one in coordinates]
+    balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
+    exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
+    top = max(int(one.exponents.max()) for one in coordinates)
+    scales = np.array([*program.scales.values()])
+    multipliers = np.ldexp(solution.multipliers * scales, -program.unit)
+    found = dict(zip(program.scales, multipliers, strict=True))
+    if errors:
+        taus, claim = _allow_for(program, solution, claim)
+        if claim >= 1:
+            return
+        found |= taus
+    for bits in digits:
+        if bits != digits[-1] and not errors:
+            coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+            own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
+            if not program.margins(replace(solution, forms=own), float(claim)).min() > 0:
+                continue
+        log2 = bits + 2 * top
+        whole = [
+            round_form(Q, top - one.exponents, bits - exponent)
+            for one, Q in zip(coordinates, balanced, strict=True)
+        ]
+        nodes = []
+        for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
+            kept = entries_of(drawing, k, states_at(drawing, node))
+            nodes.append(Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept)))
+        values = numerators(np.array([*found.values()]), log2 - exponent)
+        facts = tuple(
+            Multiplier(name, value, target)
+            for (name, b), value in zip(found, values, strict=True)
+            for target in ([None] if b is None else drawing.like(b))
+        )
+        graph = replace(
+            drawing.graph,
+            nodes=tuple(nodes),
+            denominator_log2=max(log2, 0),
+            rate=claim,
+            multipliers=facts,
+        )
+        if graph.stays and graph.stays.leaving and program.time is Time.CONTINUOUS:
+            # How finely stays of any length are enclosed.
+            if (pieces := enough_pieces(drawing.system, graph)) is None:
+                continue
+            graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
+        if program.degree > 1:
+            forms = _round_vanishing(program, graph, solution, bits - exponent, top)
+            graph = replace(graph, vanishing=forms)
+        yield graph
+
+
+def _round_vanishing(
+    program: FormsProgram, graph: FormsOnGraph, solution: Solution, bits: int, top: int
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """Round forms so that they vanish exactly, in the units of the exact inequalities."""
+    found, timed = [], [k for k, edge in enumerate(program.every) if edge.is_strict]
+    for k, (_, step, _) in zip(timed, graph.edges_in_time(program.drawing.system), strict=True):
+        edge = program.every[k]
+        assert isinstance(step, Step)  # polynomials are enclosed by nobody
+        exponents = program.drawing.coordinates[edge.before].exponents[edge.kept]
+        N = round_form(solution.vanishing[program.stands_for[k]], top - exponents, bits)
+        factor, unit = _factor(step, program.degree, graph.rate), program.unit * edge.is_flow
+        scaled = [[_shift(factor * entry, -unit) for entry in row] for row in N]
+        groups = products(program.variables(edge.size), program.degree)
+        found.append(tuple(map(tuple, make_vanish(scaled, groups))))
+    return tuple(found)
+
+
+def _allow_for(
+    program: FormsProgram, solution: Solution, claim: Fraction
+) -> tuple[dict[Fact, float], Fraction]:
+    """Return multipliers of errors, and what is left of a rate if a form loses what they take.
+
+    In the norm of the forms, an error of size ``s`` times that of the state takes ``2 s`` of
+    V; with the multiplier ``|C| / |q|`` half of it is taken by either term.
+    """
+    pushed, sizes = dict[Fact, float](), dict[Fact, float]()
+    loss: dict[int, set[Fact]] = {}
+    for edge in program.every:
+        L, inverse = (
+            np.linalg.cholesky(solution.forms[k][np.ix_(entries, entries)])
+            for k, entries in ((edge.after, edge.left), (edge.before, edge.kept))
+        )
+        inverse = np.linalg.inv(inverse)
+        for error in edge.errors:
+            fact = error.fact
+            pushed[fact] = max(pushed.get(fact, 0.0), float(np.linalg.norm(error.column @ L)))
+            size = float(np.linalg.norm(inverse @ error.q))
+            sizes[fact] = max(sizes.get(fact, 0.0), size)
+            loss.setdefault(fact[1] or 0, set()).add(fact)
+    worst = max(sum(2 * pushed[f] * sizes[f] for f in facts) for facts in loss.values())
+    taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
+    left = float(claim) ** 2 + LOST_TO_ERRORS * worst
+    return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+
+
+def _factor(step: Step, degree: int, rate: Fraction) -> int:
+    """Return what the exact inequality of a lifted step is multiplied with."""
+    moved = lifted(step, degree, rate)
+    if not step.is_flow:
+        return int(moved.units[0]) ** 2
+    return (2 * degree * rate * moved.over).denominator * moved.over
+
+
+def _shift(value: int, exponent: int) -> int:
+    return value << exponent if exponent >= 0 else value >> -exponent
+
+
+def _rounded(Q: Array, bits: int) -> Array:
+    """Round to so many bits after the binary point, in floating point."""
+    return np.asarray(np.ldexp(np.rint(np.ldexp((Q + Q.T) / 2, bits)), -bits))

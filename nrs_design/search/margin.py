@@ -73,7 +73,7 @@ class MarginBrackets:
     command: CommandMargin | None
 
 
-class Axis:
+class MarginAxis:
     """The numbers that were tried, each once, and what was found there.
 
     `what` and `unit` tell a number to whoever listens before it is decided.
@@ -214,7 +214,7 @@ def find_margin(
     `known`, found at scale 1, perhaps by a longer search, is the least that is reported. An error
     if not even the nominal values make a system.
     """
-    axis, one = Axis(assemble, certify, progress, "box scaled by"), Fraction(1)
+    axis, one = MarginAxis(assemble, certify, progress, "box scaled by"), Fraction(1)
     if known is None:
         assemble(Fraction(0))  # Raises what is wrong, and where.
     else:
@@ -239,7 +239,7 @@ def find_longest_delay(
     tells in which contact, empty for any. `known` is on the declared ones.
     """
     declared, longest = map(Fraction, delays[1:])
-    axis = Axis(lambda n: assemble(delays[0], int(n)), certify, progress, "delay", whole=True)
+    axis = MarginAxis(lambda n: assemble(delays[0], int(n)), certify, progress, "delay", whole=True)
     axis.found[declared] = known
     down = (Fraction(n) for n in range(delays[1] - 1, delays[0] - 1, -1))
     found = axis.bracket(declared, down, _doubled(declared, longest))
@@ -273,7 +273,7 @@ def find_longest_period(
     Other periods make other systems: nothing follows from one for the ones in between. `known` is
     on the period of the spec.
     """
-    axis = Axis(assemble, certify, progress, "period", "s")
+    axis = MarginAxis(assemble, certify, progress, "period", "s")
     axis.found[period] = known
     factors = [Fraction(2) ** k for k in range(1, DOUBLINGS + 1)]
     down, up = ([period / f for f in factors], [period * f for f in factors])
@@ -289,7 +289,7 @@ def find_most_misses(
     progress: Progress = silent,
 ) -> Bracket:
     """Bracket how many steps may be missed, up to `most`; `known` is on the declared number."""
-    axis = Axis(assemble, certify, progress, "misses", whole=True)
+    axis = MarginAxis(assemble, certify, progress, "misses", whole=True)
     axis.found[Fraction(declared)] = known
     down = (Fraction(declared >> k) for k in range(1, declared.bit_length()))
     return axis.bracket(Fraction(declared), down, _doubled(Fraction(declared), Fraction(most)))
@@ -310,7 +310,10 @@ def find_shortest_dwell(
         # From where motions decay under saturation is no matter of a margin.
         return replace(system, switching=switching, saturation=None)
 
-    axis, longest = Axis(assemble, certify, progress, "dwell time", "s"), Fraction(LONGEST_DWELL)
+    axis, longest = (
+        MarginAxis(assemble, certify, progress, "dwell time", "s"),
+        Fraction(LONGEST_DWELL),
+    )
     if (dwell := _common_dwell(system, known)) is not None:
         axis.found[-dwell] = known
     free = axis.at(Fraction(0))

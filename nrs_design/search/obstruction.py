@@ -18,7 +18,7 @@ from nrs_design.search.balance import time_unit
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import digits
-from nrs_design.search.sdp import Program, stacked, symmetric_basis, unpack
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -49,11 +49,11 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     images = half + np.swapaxes(half, -1, -2)
     if time is Time.DISCRETE:
         images = half @ np.swapaxes(matrices, -1, -2)[:, None] - basis
-    program = Program(m * own + 1)
+    program = SemidefiniteProgram(m * own + 1)
     for k in range(m):
         program.add(zero, [(k * own, np.eye(own))])
-    margin = (m * own, stacked(-np.eye(n)[None]))
-    program.add(zero, [(0, stacked(images.reshape(-1, n, n))), margin])
+    margin = (m * own, packed_columns(-np.eye(n)[None]))
+    program.add(zero, [(0, packed_columns(images.reshape(-1, n, n))), margin])
     traces = -np.trace(basis, axis1=1, axis2=2)
     program.add(np.ones((1, 1)), [(0, np.tile(traces, m)[None])])
     found = program.maximize(allowance or Allowance())

@@ -24,7 +24,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.drawing import FloatStep
 from nrs_design.search.family import NEARLY
 from nrs_design.search.rounding import numerators, unscale
-from nrs_design.search.sdp import Program, stacked, symmetric_basis
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -230,17 +230,17 @@ class OneForm:
         basis = self.basis
         place = {name: len(basis) + i for i, name in enumerate(self.scales)}
         last = len(basis) + len(place)
-        program = Program(last + 1)
+        program = SemidefiniteProgram(last + 1)
 
         def add(
             constant: Array, form: Array, facts: Mapping[str, Array], corner: Array | None
         ) -> None:
-            images = [(0, stacked(form))]
+            images = [(0, packed_columns(form))]
             for name, own in facts.items():
-                images.append((place[name], stacked(own[None] / self.scales[name])))
+                images.append((place[name], packed_columns(own[None] / self.scales[name])))
             if corner is not None:
                 spared = corner if level is None else np.eye(len(corner))
-                images.append((last, stacked(-spared[None])))
+                images.append((last, packed_columns(-spared[None])))
                 constant = constant if level is None else constant + level * corner
             program.add(constant, images)
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import nearly_same, to_floats
-from nrs_design.search.sdp import Program, stacked, symmetric_basis
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -182,9 +182,9 @@ def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
     blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(held)]
-    program = Program(unknowns)
+    program = SemidefiniteProgram(unknowns)
     for constant, images in [*blocks, *_decreases(loop, rate, S, Y, near)]:
-        program.add(constant, [(0, stacked(images))])
+        program.add(constant, [(0, packed_columns(images))])
     reached = program.maximize(loop.allowance)
     if reached is None or reached.x[-1] <= 0:
         return None

@@ -137,7 +137,7 @@ class Maximum:
     duals: list[Array]  # How much a unit of each block adds to the margin
 
 
-class Program:
+class SemidefiniteProgram:
     """Make the last unknown as large as all blocks stay positive semidefinite with.
 
     A block is ``C + sum of x_k F_k`` over the few unknowns that it depends on.
@@ -204,12 +204,12 @@ class Program:
         return Maximum(x, [unpack(part, n) for part, n in duals])
 
 
-def stacked(forms: Array) -> Array:
+def packed_columns(forms: Array) -> Array:
     """Return forms, shape (N, s, s), as columns of a block."""
     return pack(forms).T
 
 
-def congruence(L: Array, R: Array) -> Array:
+def packed_congruence(L: Array, R: Array) -> Array:
     """Return what the packed entries of Q add to ``L Q R'``, of which the upper half counts."""
     a, b = triangle(len(L))
     i, j = triangle(L.shape[1])

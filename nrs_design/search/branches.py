@@ -156,8 +156,6 @@ class StepGraph:
             return None
         if system.switching.is_arbitrary:
             return cls.free(names, matrices)
-        if system.switching.fixed_ends:
-            return None
         shortest, longest = stay_bounds(system)
         jumps = jumps_of(system)
         # Steps in a mode are counted up to where nothing changes any more.

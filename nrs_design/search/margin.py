@@ -128,7 +128,7 @@ class MarginAxis:
         """
         next(filter(self.is_proved, [start, *down]), None)
         for number in up:
-            if idle <= 0 or any(map(self.is_refuted, self.found)):
+            if idle <= 0 or any(n <= number and self.is_refuted(n) for n in self.found):
                 break
             if isinstance(fault := self._assembled(number), str):
                 self.found[number] = fault

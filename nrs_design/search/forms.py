@@ -256,6 +256,10 @@ class FormsProgram:
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
         return [every[k] for k in first]
 
+    def solution_of(self, Q: Array) -> Solution:
+        """Return a form for all modes, however it was found, as a solution."""
+        return Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
+
     def margins(self, solution: Solution, rate: float) -> Array:
         """Return the smallest eigenvalue of every inequality; it may be a little below zero.
 

@@ -16,7 +16,6 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
@@ -68,8 +67,7 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
 
 def _roundings(family: Family, Q: Matrices, words: str) -> Iterator[Candidate[FormsOnGraph]]:
     program = FormsProgram(draw_balanced(family))
-    solution = Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(program.edges))
-    yield from at_own_rate(program, solution, family, digits(), words)
+    yield from at_own_rate(program, program.solution_of(Q), family, digits(), words)
 
 
 def find_by_gradient(family: Family) -> GradientResult:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
@@ -19,7 +20,13 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, round_coordinates, scale_states, separating
+from nrs_design.search.balance import (
+    balance,
+    mean_norm,
+    round_coordinates,
+    scale_states,
+    separating,
+)
 from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates
@@ -39,7 +46,7 @@ from nrs_design.search.polynomial import (
     monomial_weights,
     work_of_checks,
 )
-from nrs_design.search.rates import POLYNOMIAL, Rates, propose
+from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, propose
 from nrs_design.search.rounding import digits, round_rate
 from nrs_design.search.stays import round_stays
 from nrs_design.work import Cost
@@ -296,7 +303,13 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
 
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all modes, in kept contact, whatever the arithmetic rounds."""
-    return (yield from _together(family, draw_balanced(family), (False,)))
+    drawing = draw_balanced(family)
+    if not family.optimize_rate and drawing.is_finite:
+        # The mean of the modes' own norms often does, and takes no solver.
+        with suppress(np.linalg.LinAlgError):
+            program, Q = FormsProgram(drawing), mean_norm(family.matrices, family.system.time)
+            yield from at_own_rate(program, program.solution_of(Q), family, digits())
+    return (yield from _together(family, drawing, (False,)))
 
 
 def _together(

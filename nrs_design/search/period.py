@@ -156,10 +156,10 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
 def stay_words(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield words that grow, each more than all before it; if none does, the best one.
 
-    Nothing is yielded where a stay has no longest length, or none varies.
+    Nothing is yielded where no stay varies, or some have no longest length and no choice of resets.
     """
-    varies = graph.longest > graph.shortest
-    if np.isinf(graph.longest).any() or not varies.any():
+    varies, choice = graph.longest > graph.shortest, any(jump.way for jump in graph.jumps)
+    if not varies.any() or (np.isinf(graph.longest).any() and not choice):
         return
     rows: list[tuple[int, int, int]] = []
     times, maps = list[float](), list[Array]()
@@ -188,5 +188,7 @@ def stay_words(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Arra
 
 def _lengths(graph: Graph, mode: int) -> Array:
     first, last = float(graph.shortest[mode]), float(graph.longest[mode])
+    if isinf(last):
+        return graph.times[mode][:LENGTHS]
     found = np.linspace(first, last, LENGTHS if last > first else 1)
     return np.asarray(np.maximum(found, BRIEF * last))

@@ -16,7 +16,7 @@ from nrs_design.search.gradient_settings import Gradient
 
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
-    from nrs_design.search.method_run import MethodRun
+    from nrs_design.search.comparison import MethodRun
     from nrs_design.spec import LoadedSpec
 
 PANEL = "Gradient iteration"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification
-    from nrs_design.search.loop_margin import Bracket, MarginBrackets
+    from nrs_design.search.margin import Bracket, MarginBrackets
     from nrs_design.spec import Spec
 
 
@@ -136,7 +136,6 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
             **_number("proved", dwell.proved, upper_float),
             **_number("refuted", dwell.refuted, lower_float),
             "refuted_in": dwell.refuted_in or None,
-            "longest_tried": lower_float(dwell.longest),
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
         }

@@ -9,7 +9,6 @@ changed spec.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -41,7 +40,7 @@ SHARE = 0.4
 # Of that, what may be spent on gains.
 GAINS = 0.4
 # Of the rest, up to where it may be spent on finding lines about numbers and words, on how far they
-# go (or, if there is none, on several together), and on what is left out whole.
+# go, and on what is left out whole.
 FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
@@ -129,8 +128,7 @@ class _Search:
         gains = self._calmer(GAINS * self._budget)
         start, rest = self._spent, self._budget - self._spent
         proved = gains + self._single(mild, start + FIND * rest, start + STRETCH * rest)
-        several = () if proved else self._together(lines, start + STRETCH * rest)
-        proved += self._single(drastic, self._budget, self._budget) + several
+        proved += self._single(drastic, self._budget, self._budget)
         unbounded = bool(self._result.certification.system.channels)
         return Blocked(proved, len(lines), len(found), unbounded, self._spent)
 
@@ -188,26 +186,6 @@ class _Search:
             else:
                 high = middle
         return way, low
-
-    def _together(self, lines: Sequence[SpecRelaxation], until: float) -> tuple[Proved, ...]:
-        """Return what is proved when several lines ask for less, and as few of them as is found.
-
-        All are changed at once; then one after the other is put back, the most drastic first, as
-        long as the rest is proved.
-        """
-        kept: list[SpecRelaxation] = []
-        for line in (line for line in lines if line.combinable):
-            with suppress(SpecError):  # What makes no valid spec with the others is left out.
-                _edited(self._result.loaded, _least([*kept, line]))
-                kept.append(line)
-        if len(kept) < 2 or not self._decide(_least(kept), (until - self._spent) / 2):
-            return ()
-        for left, line in zip(range(len(kept), 0, -1), reversed(tuple(kept)), strict=True):
-            fewer = [other for other in kept if other is not line]
-            if self._decide(_least(fewer), (until - self._spent) / left):
-                kept = fewer
-        # One line alone was found already.
-        return (self._least_proved(kept),) if len(kept) > 1 else ()
 
     def _decide(self, edits: Sequence[Edit], budget: float) -> _Decided | None:
         """Take a changed spec all the way; None without a proof, or where it makes no system."""
@@ -305,15 +283,9 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
         spent = f"{blocked.work:.2g} of work"
         verb = "was" if blocked.tried == 1 else "were"
         return (f"no change found that is proved: {some} of the spec {verb} tried ({spent})",)
-    alone = len(blocked.proved) > 1 or len(blocked.proved[0].lines) == 1
-    head = "proved with any one of these changes"
-    if not alone:
-        head = f"proved with these changes together, and with none of {some} alone that was tried"
-    head += "; a larger --budget may reach further"
+    head = "proved with any one of these changes; a larger --budget may reach further"
     head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
     lines = [_said(item, path) for item in blocked.proved]
-    if not alone:
-        lines = [_place(line, path) for line in blocked.proved[0].lines]
     more = len(lines) - SHOWN
     if more > 1:
         lines = [*lines[:SHOWN], f"and {more} more (--json)"]

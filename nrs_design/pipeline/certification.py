@@ -240,8 +240,7 @@ def certificate_of(
 def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
     """Return what a certificate that was checked shows, as if it had been found just now."""
     from nrs_design.certificates.certificate import verdict_of
-    from nrs_design.search.family import floats_in_silence
-    from nrs_design.search.rate_limit import rate_limit
+    from nrs_design.search.family import floats_in_silence, rate_limit
 
     outcome = f"{file.name}: each of its statements was checked again exactly"
     with floats_in_silence():

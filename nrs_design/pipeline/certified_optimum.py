@@ -26,7 +26,7 @@ from nrs_design.pipeline.certification import (
     meets_goals,
     search_limits,
 )
-from nrs_design.pipeline.design import Designed, for_goal, placed, wanted_age, wanting
+from nrs_design.pipeline.design import Designed, for_goal, placed, wanted_age
 from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
@@ -37,7 +37,6 @@ from nrs_design.pipeline.free_gains import (
 from nrs_design.pipeline.gain_coordinate import Written
 from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, constraints_of, evaluator
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.bounds import rounded_down
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -93,20 +92,16 @@ def run_certified_optimum(
 ) -> CertifiedOptimum:
     """Choose the free gains as `find_certified_optimum` does, or take those of the least cost.
 
-    These the design has; they are taken where any function proves the goals of them. Where none are
-    proved for the goal `delay`, the `DesignError` names the longest that is reached.
+    These the design has; they are taken where any function proves the goals of them.
     """
     with placed(designed.loaded):
-        age = wanted_age(designed)
+        wanted_age(designed)  # Refuses what is not modelled.
     try:
         return find_certified_optimum(designed, analysis, progress)
-    except DesignError as error:
+    except DesignError:
         if (found := _at_least_cost(designed, analysis, progress)) is not None:
             return found
-        if age is None:
-            raise
-        with placed(designed.loaded):
-            raise _too_old(designed, analysis, age, progress, error) from error
+        raise
 
 
 def find_certified_optimum(
@@ -147,40 +142,6 @@ def _at_least_cost(
     goals = tuple(SteeredGoal(key, goal.exact, False, None) for key, goal in wanted if goal)
     cost = gains.cost(one.x)
     return CertifiedOptimum(result, one.written, cost, cost, None, goals, 0)
-
-
-def _too_old(
-    designed: Designed,
-    analysis: DesignAnalysis,
-    age: int,
-    progress: Progress,
-    error: DesignError,
-) -> DesignError:
-    """Say up to which age the other goals are reached, where they are not at the one asked for."""
-    goals, sampling = designed.spec.goals, designed.spec.sampling
-    assert goals is not None, "as one is the delay"
-    assert goals.delay is not None
-    assert sampling is not None
-    low, high, nearest = sampling.delay[1] - 1, age, None  # The declared age is tried as well
-    while high - low > 1:
-        middle = (low + high) // 2
-        try:
-            asked = wanting(designed, middle)
-            low, nearest = middle, find_certified_optimum(asked, analysis, progress)
-        except DesignError:
-            high = middle
-    reached = "nor is what the spec declares"
-    if nearest is not None:
-        gains = ", ".join(f"{' '.join(key)} = {text}" for key, text in nearest.gains.items())
-        reached = (
-            f"{rounded_down(low * sampling.outer, 's')} is reached, at a cost of "
-            f"{nearest.cost:.4g}, by {gains}"
-        )
-    return DesignError(
-        f"the goal delay, {goals.delay.text}, is not reached; {reached}. Beyond: {error.message}",
-        remedy=error.remedy,
-        at=("goals", "delay"),
-    )
 
 
 class _Search:

@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.axis import about
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.sampling import LONGEST_DELAY
 
 if TYPE_CHECKING:
@@ -170,17 +168,6 @@ def declaring(designed: Designed, age: int) -> Designed:
     assert designed.spec.sampling is not None, "a delay is of samples"
     least = designed.spec.sampling.delay[0]
     return _with_spec(designed, declaring_ages(designed.spec, (min(least, age), age)))
-
-
-def wanting(designed: Designed, age: int) -> Designed:
-    """Return a design whose goal `delay` is so many samples."""
-    goals, sampling = designed.spec.goals, designed.spec.sampling
-    assert goals is not None, "as one is the delay"
-    assert sampling is not None, "a delay is of samples"
-    text = exact_text(age * sampling.outer)
-    delay = Quantity(f"{text} s", age * sampling.outer, "s")
-    goals = goals.model_copy(update={"delay": delay})
-    return _with_spec(designed, designed.spec.model_copy(update={"goals": goals}))
 
 
 def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
@@ -18,8 +18,7 @@ from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec.misses import MOST_STATES, MissRuleSpec
 
 if TYPE_CHECKING:
-    from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
-    from nrs_design.search.margin import BoxMargin, DwellMargin
+    from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.spec.sampling import SamplingSpec
 
 MARGIN_BUDGET = 10.0
@@ -32,8 +31,8 @@ class ProofMargins:
     """How far a proof reaches, as far as that was asked for."""
 
     loop: MarginBrackets | None = None  # Of delay, period and disturbances
-    box: BoxMargin | None = None  # Of the declared ranges
-    dwell: DwellMargin | None = None  # Of the time between switches
+    box: Bracket | None = None  # Of the declared ranges
+    dwell: Bracket | None = None  # Of the time between switches
     misses: Bracket | None = None  # Of the number of deadlines that may be missed
 
 
@@ -79,18 +78,22 @@ def _rule_for_misses(result: Result) -> MissRuleSpec | None:
 
 def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the most misses in the same window, or in a row, with a proof."""
-    from nrs_design.search.loop_margin import find_most_misses
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_most_misses
 
     declared, of = rule.window
 
-    def decide(number: int) -> Certification | str:
-        changed = rule.with_misses(number)
+    def assemble(number: Fraction) -> SwitchedSystem:
+        changed = rule.with_misses(int(number))
         if (many := changed.states) > MOST_STATES:
-            return f"{many} states, and at most {MOST_STATES} are built"
-        return _decided(partial(_with_rule, result, changed), limits)
+            raise AssemblyError(f"{many} states, and at most {MOST_STATES} are built")
+        return _with_rule(result, changed)
 
     most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
-    return find_most_misses(declared, most, decide, result.certification, progress)
+    known = result.certification
+    return find_most_misses(
+        declared, most, assemble, partial(certify, limits=limits), known, progress
+    )
 
 
 def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
@@ -112,18 +115,7 @@ def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> Switche
     return assemble_spec(designed.loaded, replace(designed, spec=changed))
 
 
-def _decided(assemble: Callable[[], SwitchedSystem], limits: Limits) -> Certification | str:
-    """Return the verdict on a system, or why there is no system."""
-    from nrs_design.search.certify import certify
-
-    try:
-        system = assemble()
-    except NrsDesignError as error:
-        return error.message
-    return certify(system, limits=limits)
-
-
-def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
+def _run_box(result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the largest box around the nominal values that still has a proof; the design is kept."""
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
@@ -146,7 +138,7 @@ def _refuse_box(result: Result) -> None:
 
 def _run_loop(result: Result, limits: Limits, progress: Progress) -> MarginBrackets | None:
     """Find how far delay, period and disturbances stretch; None where a spec has none of them."""
-    from nrs_design.search.loop_margin import MarginBrackets
+    from nrs_design.search.margin import MarginBrackets
 
     if result.designed is None or not _has_loop(result):
         return None
@@ -171,43 +163,33 @@ def _sampling_margins(
     progress: Progress,
 ) -> tuple[Bracket, Bracket]:
     """Decide the loop at other delays and other periods, without what disturbs it."""
-    from nrs_design.search.certify import refuted_at_once
-    from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
+    from nrs_design.search.certify import certify, refuted_at_once
+    from nrs_design.search.margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
-    def decide(changes: Mapping[str, object]) -> Certification | str:
-        return _decided(partial(_with_sampling, designed, changes), limits)
+    def at_delays(shortest: int, longest: int) -> SwitchedSystem:
+        return _with_sampling(designed, {"delay": (shortest, longest)})
 
-    def unstable_in(delay: int) -> str | None:
-        progress(f"delay {delay} alone")
-        try:
-            system = _with_sampling(designed, {"delay": (delay, delay)})
-        except NrsDesignError:
-            return None  # What makes no loop shows nothing.
-        return refuted_at_once(system, limits)
+    def at_period(period: Fraction) -> SwitchedSystem:
+        changes = {
+            name: replace(given, value=period * given.value / sampling.period.exact)
+            for name in ("period", "outer_period")
+            if (given := getattr(sampling, name)) is not None
+        }
+        return _with_sampling(designed, changes)
 
-    def at_delay(longest: int) -> Certification | str:
-        return decide({"delay": (sampling.delay[0], longest)})
-
-    def at_period(period: Fraction) -> Certification | str:
-        return decide(
-            {
-                name: replace(given, value=period * given.value / sampling.period.exact)
-                for name in ("period", "outer_period")
-                if (given := getattr(sampling, name)) is not None
-            }
-        )
-
+    quick, alone = partial(certify, limits=limits), partial(refuted_at_once, limits=limits)
+    delays = (*sampling.delay, LONGEST_DELAY)
     return (
-        find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, unstable_in, known, progress),
-        find_longest_period(sampling.period.exact, at_period, known, progress),
+        find_longest_delay(delays, at_delays, quick, alone, known, progress),
+        find_longest_period(sampling.period.exact, at_period, quick, known, progress),
     )
 
 
 def _command_margin(result: Result) -> CommandMargin | None:
     """Compare the certified bound on the force with the worst run of an adversary."""
     from nrs_design.certificates.bounds import bound_on
-    from nrs_design.search.loop_margin import command_margin
+    from nrs_design.search.margin import command_margin
     from nrs_design.simulation.worst_case import worst_against
 
     system = result.certification.system
@@ -215,7 +197,7 @@ def _command_margin(result: Result) -> CommandMargin | None:
     return None if found is None else command_margin(found, worst_against(system, found).value)
 
 
-def _run_dwell(result: Result, limits: Limits, progress: Progress) -> DwellMargin:
+def _run_dwell(result: Result, limits: Limits, progress: Progress) -> Bracket:
     """Find the shortest dwell time with a proof, whatever dwell time the spec declares."""
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_shortest_dwell

@@ -92,7 +92,7 @@ def force_constraint(wanted: float) -> ProofConstraint:
     ) -> ConstraintValue | None:
         """Solve for a few shares, near the one that was the best."""
         nonlocal share
-        from nrs_design.search.force_slope import force_slope
+        from nrs_design.search.rate_slope import force_slope
 
         output = next(output for output in system.outputs if output.name == "force")
         found = force_slope(system, output, allowance, share)

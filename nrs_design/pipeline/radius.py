@@ -23,19 +23,15 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.branches import best_words
+from nrs_design.search.branches import StepGraph, best_words
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.search.certify import certify
-from nrs_design.search.extremal_words import least_growth, words_in_norms
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.memory import draw_memory, memories
-from nrs_design.search.method import Method
+from nrs_design.search.memory import draw_memory, least_growth, memories, words_in_norms
 from nrs_design.search.period import powers
 from nrs_design.search.rounding import digits
 from nrs_design.search.rung import Facts
-from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Allowance, NotAffordableError
 
 E = TypeVar("E", bound=AbstractEvidence)
@@ -44,9 +40,8 @@ E = TypeVar("E", bound=AbstractEvidence)
 # these factors more than they show there.
 CLAIMED, CLAIM_BITS = (1 - 1e-8, 1 - 1e-6, 1 - 1e-4), 40
 MORE, RATE_BITS = (1 + 1e-5, 1 + 1e-4, 1 + 1e-3), 24
-# Modes are divided by so many times the growth of the best word, so that a function is found.
-ROOM = (Fraction(3, 2), Fraction(6))
-CLOSE = Fraction(101, 100)
+# Modes are divided by so many times the growth of the best word, so that forms are found.
+ROOM = Fraction(3, 2)
 # Ends that are no farther apart than by this factor are left as they are. A longer memory is used
 # where it narrows the gap by this share of it at least.
 NEAR, GAIN = 1 + 2e-4, 0.25
@@ -101,10 +96,10 @@ def bound_radius(found: Certification, limits: Limits) -> RadiusBounds | None:
         known = found.evidence.proved_rate(system), found.method
         bounds = replace(bounds, upper=known[0], method=known[1])
     limits = replace(limits, budget=budget, more=False)
-    if graph is not None and bounds.lower is not None and Facts.of(system).is_of_words:
+    if graph is not None and bounds.lower is not None and Facts.of(system).is_of_words():
         with floats_in_silence():
             bounds = _with_memory(system, graph, bounds, limits)
-    return _without_memory(system, bounds, limits) if bounds.upper is None else bounds
+    return bounds
 
 
 def _with_words(
@@ -133,18 +128,6 @@ def _proposed(found: Iterable[Candidate[E]]) -> Candidates[E]:
     return None
 
 
-def _without_memory(system: SwitchedSystem, bounds: RadiusBounds, limits: Limits) -> RadiusBounds:
-    """Find the upper end that a form for each mode shows."""
-    lower = bounds.lower or Fraction(1)
-    for room in ROOM:
-        if (shown := _shown(system, room * lower, limits)) is not None:
-            # What is claimed is off the best by a share of the room.
-            closer = _shown(system, shown[0] * CLOSE, limits)
-            upper, method = min(shown, closer or shown)
-            return replace(bounds, upper=upper, method=method)
-    return bounds
-
-
 def _with_memory(
     system: SwitchedSystem, graph: StepGraph, bounds: RadiusBounds, limits: Limits
 ) -> RadiusBounds:
@@ -156,7 +139,7 @@ def _with_memory(
     allowance, for_words = (
         Allowance(min(limits.budget, work), limits.memory) for work in (WITH_MEMORY, IN_NORMS)
     )
-    by, at = bounds.lower * ROOM[0], float(1 / ROOM[0])
+    by, at = bounds.lower * ROOM, float(1 / ROOM)
     best = min(1.0, float(bounds.upper / by)) if bounds.upper else 1.0
     divided, found = _divided(system, by), None
     for length, degree in _by_work(divided, allowance, limits.max_degree or QUARTIC):
@@ -219,15 +202,6 @@ def _claimed(
             method = f"{kind} with a memory of {counted(length, 'step')}"
             return replace(bounds, upper=claim * by, method=method)
     return bounds
-
-
-def _shown(system: SwitchedSystem, by: Fraction, limits: Limits) -> tuple[Fraction, str] | None:
-    """Return what the modes divided by a number are shown to grow by, as they are."""
-    found = certify(_divided(system, by), Method.MODE_QUADRATIC, limits)
-    if found.verdict is not Verdict.PROVED or found.evidence is None:
-        return None
-    rate = found.evidence.proved_rate(found.system)
-    return None if rate is None else (rate * by, found.method)
 
 
 def _divided(system: SwitchedSystem, by: Fraction) -> SwitchedSystem:

@@ -25,7 +25,7 @@ from nrs_design.spec import LoadedSpec
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.search.certification import Limits
-    from nrs_design.search.method_run import MethodRun
+    from nrs_design.search.comparison import MethodRun
 
 _ANEW = "make it anew with certify-switching --out"
 

@@ -16,11 +16,12 @@ from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Block, Bullets, Section
 from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec, RobotSpec
+from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.loop_margin import Bracket
+    from nrs_design.search.margin import Bracket
     from nrs_design.spec import Spec
     from nrs_design.spec.misses import MissRuleSpec
 
@@ -85,7 +86,7 @@ def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
     dwell = margins.dwell
     if dwell is None:
         return
-    proved = f"no proof up to {rounded_down(dwell.longest, 's')}, where the search ended"
+    proved = f"no proof up to {LONGEST_DWELL} s, where the search ended"
     if dwell.proved is not None and dwell.proof is not None:
         proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
     refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"

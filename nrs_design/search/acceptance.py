@@ -9,14 +9,17 @@ from numpy.linalg import LinAlgError
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.exact import TooLargeError
+from nrs_design.proof.exact import IntegerMatrix, TooLargeError, bit_length
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, E
 from nrs_design.search.certification import Attempt
 from nrs_design.search.family import floats_in_silence
-from nrs_design.search.fast_check import find_fault
 from nrs_design.work import Allowance, NotAffordableError
 
+# Work of a check per candidate and per form: for itself, more where what happens during a stay is
+# enclosed anew for it, and per product of entries and square of their bits.
+PER_CANDIDATE, PER_FORM, PER_ENCLOSED_FORM = 1e-3, 1e-4, 5e-4
+PER_PRODUCT, PER_SQUARED_BITS = 1.5e-7, 2e-13
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 
@@ -46,7 +49,7 @@ def first_accepted(
     Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
     than needed are asked for. Checks are charged to the allowance; none is left out for it.
     """
-    charge = (allowance or Allowance()).charge
+    allowance = allowance or Allowance()
     fault: str | None = None
     while True:
         try:
@@ -54,7 +57,15 @@ def first_accepted(
         except StopIteration as end:
             refused = f"a candidate was found, but {fault}" if fault else NO_RATE
             return None, end.value or refused
-        fault = find_fault(candidate.evidence, system, charge)
+        made: list[IntegerMatrix] = []
+        fault = candidate.evidence.find_fault(system, made)
+        # Evidence that encloses what happens during a stay says in how many pieces.
+        encloses = getattr(getattr(candidate.evidence, "stays", None), "pieces", 1) > 1
+        each = PER_ENCLOSED_FORM if encloses else PER_FORM
+        products = (
+            len(M) ** 3 * (PER_PRODUCT + PER_SQUARED_BITS * bit_length(M) ** 2) for M in made
+        )
+        allowance.charge(PER_CANDIDATE + each * len(made) + sum(products))
         if fault is None:
             return candidate.evidence, candidate.words
 
@@ -75,5 +86,5 @@ def attempted(
 def check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
     """Check what was put together from evidence for fewer modes or states."""
     for statement in statements:
-        if fault := find_fault(statement, system):
+        if fault := statement.find_fault(system):
             raise InternalError(f"the search returned evidence that does not hold: {fault}")

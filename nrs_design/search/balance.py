@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.mode import Time
 
 SWEEPS = 64
+# In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
+ENTRY_LOG2 = 3
 # Larger Lyapunov equations are solved by Schur decompositions, not as one linear system, for which
 # SciPy need not be loaded.
 DENSE_ORDER = 10
@@ -45,6 +47,13 @@ def scale_states(
     """Return ``2^-d A 2^d`` for every matrix; exact but for under- and overflow."""
     scaled: NDArray[np.float64] = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
     return scaled
+
+
+def time_unit(matrices: NDArray[np.float64], time: Time) -> int:
+    """Choose the unit of time, two to this power, by the largest entry."""
+    if time is Time.DISCRETE:
+        return 0
+    return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
 def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:

@@ -59,8 +59,8 @@ class Certification:
     # The deciding evidence first, if any. Each has passed the exact check.
     statements: tuple[AbstractEvidence, ...]
     attempts: tuple[Attempt, ...]  # Every rung in order
-    # No proof can claim a faster decay (in floating point): the slowest mode's rate, in discrete
-    # time the fastest growth per step along a cycle of modes. None beyond floating point.
+    # No proof can claim a faster decay (in floating point): the slowest mode's rate. None beyond
+    # floating point.
     rate_limit: float | None = None
 
     @property

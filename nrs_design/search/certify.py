@@ -21,11 +21,10 @@ from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
-from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.family import Family, floats_in_silence, rate_limit
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
-from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.statements import bounds, regions
 from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
 from nrs_design.work import Allowance, Fuse
@@ -110,7 +109,7 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
 
     Floating point suspects, exact tests decide. Empty for any contact, None if none grows.
     """
-    from nrs_design.search.rounds import search_rounds
+    from nrs_design.search.period import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
     with floats_in_silence():

@@ -11,18 +11,12 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.balance import mean_norm_coordinates, time_unit
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.lmi import time_unit
 from nrs_design.search.rates import Rates, propose
 from nrs_design.search.rounding import digits, round_form, round_matrix
-from nrs_design.search.sdp import (
-    Blocks,
-    begin,
-    program_cost,
-    symmetric_basis,
-)
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -73,7 +67,6 @@ class _Program:
     unit: int  # Of time, two to this power in s
     coordinates: Array  # Shape (n, n); x = T z
     exponents: Indices  # Of the family
-    is_dear: bool = False
 
     @classmethod
     def of(cls, family: Family, coordinates: Array) -> _Program:
@@ -91,22 +84,17 @@ class _Program:
         basis = symmetric_basis(n)
         size, square = len(basis), n * n
         unknowns = corners * size + 2 * sets * square + 1
-        touched = size + 2 * square + 1
-        cones = [(n, size)] * corners + [(2 * n, touched)] * (sets * corners)
-        # Most entries are zero: each inequality knows its own function and multipliers.
-        cost = program_cost(touched, corners * size + 1, cones)
-        begun = begin(allowance, cost, f"a program of {unknowns} unknowns")
-        blocks = Blocks()
+        program, zero = SemidefiniteProgram(unknowns), np.zeros((2 * n, 2 * n))
         for k in range(corners):
-            blocks.add(np.eye(n), dict(enumerate(-basis, k * size)))
-        functions = self._of_functions(basis, rate)
+            program.add(np.eye(n), [(k * size, -np.eye(size))])
+        functions = packed_columns(self._of_functions(basis, rate))
+        margin = unknowns - 1, packed_columns(-np.eye(2 * n)[None])
         for k in range(sets):
             at = corners * size + 2 * k * square
             for v, A in enumerate(self.modes[k]):
-                images = dict(enumerate(functions, v * size))
-                images |= enumerate(_of_multipliers(A), at)
-                blocks.add(0.0, images | {unknowns - 1: -np.eye(2 * n)})
-        found = blocks.maximize(unknowns, begun)
+                multipliers = packed_columns(_of_multipliers(A))
+                program.add(zero, [(v * size, functions), (at, multipliers), margin])
+        found = program.maximize(allowance)
         if found is None or found.x[-1] <= 0:
             return None
         x = found.x

@@ -23,9 +23,8 @@ from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
-from nrs_design.search.decay import limit_rate
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
-from nrs_design.search.family import Family, to_floats
+from nrs_design.search.family import Family, limit_rate, to_floats
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
 from nrs_design.search.rates import Rates, propose
@@ -109,11 +108,6 @@ class CountedProgram:
     def first(self) -> FormsProgram:
         """The program of first samples."""
         return FormsProgram(self.drawing, self._timed)
-
-    @property
-    def is_dear(self) -> bool:
-        """Whether every solution takes long."""
-        return self.first.is_dear
 
     def solve(self, rate: float, allowance: Allowance) -> Solution | None:
         """Return a solution at a rate."""

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
-from math import exp, isfinite
+from math import exp, inf, isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,6 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY
-from nrs_design.search.float_step import FloatStep
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -32,6 +31,7 @@ Fact = tuple[str, int | None]
 # Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
 # and one more; no fewer than for the first of these times, and no more than for the last.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
+Row = tuple[str, Array]
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,6 @@ class Solution:
     forms: list[Array]
     multipliers: Array
     vanishing: list[Array]
-    margin: float  # That they were solved for, of the edges that counted
 
 
 def states_at(drawing: Drawing, node: Node) -> int:
@@ -274,3 +273,36 @@ def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
             groups.setdefault((key, width, place), []).append((k, numbers))
         found.append(k)
     return kept, found
+
+
+@dataclass(frozen=True)
+class FloatStep:
+    """A step in the units of the system, and the facts that hold in it, by name."""
+
+    M: Array
+    errors: tuple[tuple[str, int, Array], ...]  # Entry e of z and row q: ``e^2 <= (q z)^2``
+    crossings: tuple[Row, ...]  # Row c: ``delta (c z) <= 0``
+    products: tuple[tuple[str, Array, Array], ...]  # Rows l and r: ``(l z) (r z) >= 0``
+
+    @classmethod
+    def of(cls, step: Step) -> FloatStep:
+        """Convert a step."""
+        units = step.units
+
+        def floats(entries: Sequence[int], below: int = 1) -> Array:
+            row = [_ratio(e, unit * below) for e, unit in zip(entries, units, strict=False)]
+            return np.array(row + [0.0] * (len(units) - len(row)))
+
+        return cls(
+            np.array([floats(entries, step.over) for entries in step.rows]),
+            tuple((name, i, floats(q, below)) for name, i, q, below in step.errors),
+            tuple((name, floats(c, below)) for name, c, below in step.crossings),
+            tuple((name, floats(left), floats(right)) for name, left, right in step.products),
+        )
+
+
+def _ratio(above: int, below: int) -> float:
+    try:
+        return above / below
+    except OverflowError:
+        return inf

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, scale_states
-from nrs_design.search.decay import limit_rate
+from nrs_design.search.balance import balance, mean_norm, scale_states, separating
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import Allowance
 
 # Modes that differ by less, relative to their largest entries, are nearly the same.
 NEARLY = 1e-12
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,25 +85,55 @@ def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float
     return min(limits) if system.time is Time.CONTINUOUS else max(limits)
 
 
-def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
-    """Return for each name the first one with nearly the same matrix."""
+def rate_limit(system: SwitchedSystem) -> float | None:
+    """Return a rate that no proof can beat: that of the slowest mode that need never be left.
+
+    In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
+    """
+    parts = [system.only(frozenset(names)) for names in system.cases] or [system]
+    modes = [part.lasting_modes() for part in parts]
+    if not all(modes):
+        return None
+    limits = [limit_rate(to_floats([m.A]), system.time) for part in modes for m in part]
+    limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
+    return limit if np.isfinite(limits).all() else None
+
+
+def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
+    """Return the rate of the slowest mode: ``-max Re`` in 1/s, or the largest spectral radius.
+
+    Not a number if the matrices are beyond the range of floating point.
+    """
+    if not np.isfinite(matrices).all():
+        return np.nan
+    eigenvalues = np.linalg.eigvals(matrices)
+    if time is Time.CONTINUOUS:
+        return float(-eigenvalues.real.max())
+    return float(np.abs(eigenvalues).max())
+
+
+def nearly_same(stack: NDArray[np.float64]) -> list[int]:
+    """Return for each entry of a stack the number of the first that floats hardly tell from it."""
     kept: list[int] = []
-    found: dict[str, str] = {}
-    for i, A in enumerate(matrices):
-        near = (k for k in kept if np.abs(matrices[k] - A).max() <= NEARLY * np.abs(A).max())
-        k = next(near, i)
+    found: list[int] = []
+    for i, one in enumerate(stack):
+        near = NEARLY * np.abs(one).max()
+        k = next((k for k in kept if np.abs(stack[k] - one).max() <= near), i)
         if k == i:
             kept.append(i)
-        found[names[i]] = names[k]
+        found.append(k)
     return found
+
+
+def stand_ins(names: Sequence[str], matrices: NDArray[np.float64]) -> dict[str, str]:
+    """Return for each name the first one with nearly the same matrix."""
+    return {name: names[k] for name, k in zip(names, nearly_same(matrices), strict=True)}
 
 
 def distinct_modes(modes: Sequence[Mode]) -> list[tuple[Mode, NDArray[np.float64]]]:
     """Return modes in floating point, without those that differ by an enclosed number."""
     matrices = to_floats([mode.A for mode in modes])
-    named = stand_ins([mode.name for mode in modes], matrices)
-    pairs = zip(modes, matrices, strict=True)
-    return [(mode, A) for mode, A in pairs if named[mode.name] == mode.name]
+    return [(modes[k], matrices[k]) for k in dict.fromkeys(nearly_same(matrices))]
 
 
 def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:
@@ -125,3 +155,15 @@ def floats_in_silence() -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
+
+
+def free_motions(family: Family) -> Array:
+    """Return the free modes in the coordinates of a family, shape (f, n, n)."""
+    d = family.exponents
+    free = to_floats([mode.A for mode in family.system.free]).reshape(-1, len(d), len(d))
+    return scale_states(free, d)
+
+
+def separating_coordinates(family: Family) -> Array:
+    """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""
+    return separating(mean_norm(family.matrices, family.system.time))

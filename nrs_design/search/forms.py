@@ -15,19 +15,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import Multiplier, Node, lifted
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Time
+from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, scale_states
-from nrs_design.search.cones import ConeKind, FormsCones, FormTerm
-from nrs_design.search.drawing import Drawing, Inequality, Solution, distinct, inequalities
-from nrs_design.search.forms_rounding import rounded_forms
-from nrs_design.search.interior_point import FormsPoint, maximize
-from nrs_design.search.lifted import vanishing_basis
-from nrs_design.search.lmi import FEWEST_STEPS, time_unit
-from nrs_design.search.rounding import rate_at
-from nrs_design.search.sdp import STEPS, Maximum, begin, maximize_margin, unpack
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.balance import balance, scale_states, time_unit
+from nrs_design.search.drawing import (
+    Drawing,
+    Fact,
+    Inequality,
+    Solution,
+    distinct,
+    entries_of,
+    inequalities,
+    states_at,
+)
+from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
+from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, packed_congruence, unpack
+from nrs_design.search.stays import enough_pieces
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -36,13 +44,14 @@ Indices = NDArray[np.int64]
 FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
-# Work for the first edges from which on a general solver is not asked. Our own method takes more of
-# them at once, and is content with less of those outside.
-DEAR, FIRST_OF_DEAR, BARELY = 0.05, 64, 0.1
+# A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
+LARGEST_MULTIPLIER = 64.0
 # Forms reach up to the identity where there are any; all of them below this are zero.
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
+# What is rounded takes a little more than in the first order.
+LOST_TO_ERRORS = 1.25
 
 
 @dataclass(frozen=True)
@@ -79,21 +88,6 @@ class FormsProgram:
             given = np.array([mode.A.floats() for mode in drawing.system.modes])
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
-        self._last: FormsPoint | None = None  # What our own method found last
-        self.is_dear = self._is_dear()
-        if self.is_dear:
-            self.active = _spaced(count, max(few, min(count, FIRST_OF_DEAR)))
-
-    def _is_dear(self) -> bool:
-        """Tell whether a general solver takes long, even for few edges, and our own method less.
-
-        Ours begins where every inequality has room, and knows quadratic forms only.
-        """
-        if self.degree > 1 or not all(edge.is_strict for edge in self.edges):
-            return False
-        cones = self.cones(self.active, 1.0)
-        work = cones.cost_of_solver()[0].work
-        return work > DEAR and STEPS * cones.cost().work < work
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -129,8 +123,7 @@ class FormsProgram:
                 return solution
             margins, known = self.margins(solution, rate), set(self.active)
             strict = np.array([edge.is_strict for edge in self.edges])
-            share = BARELY if self.is_dear else NEARLY_ALL
-            enough = share * min((margins[k] for k in known if strict[k]), default=0.0)
+            enough = NEARLY_ALL * min((margins[k] for k in known if strict[k]), default=0.0)
             tight = ~(margins > np.where(strict, max(enough, 0.0), 0.0))
             added = [k for k in np.argsort(margins) if tight[k] and k not in known]
             if not added:
@@ -140,79 +133,66 @@ class FormsProgram:
     def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
-        """Solve for some of the edges, with the method of our own from where the last one ended."""
-        if not self.is_dear:
-            found = self._maximum(active, rate, allowance)
-            return None if found is None else self._read(found.x, rate)
-        cones = self.cones(active, rate)
-        step = cones.cost()
-        allowance.require(
-            Cost(FEWEST_STEPS * step.work, step.memory), f"{len(active)} inequalities"
-        )
-        point = maximize(cones, self._last, lambda: allowance.goes_on(step.work))
-        if point.margin <= 0:
-            return None
-        self._last = point
-        return self._solution(point, rate)
-
-    def _maximum(self, active: Sequence[int], rate: float, allowance: Allowance) -> Maximum | None:
-        cones = self.cones(active, rate)
-        begun = begin(allowance, *cones.cost_of_solver())
-        return maximize_margin(*cones.for_solver(), begun)
+        """Solve for some of the edges; None if there is no margin."""
+        found = self._program(active, rate).maximize(allowance)
+        return None if found is None else self._read(found.x, rate)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
         """Solve at a rate, for the dual variables as well; None without a margin."""
         if self.solve(rate, allowance) is None:
             return None
-        # Enough of the edges, as the solution has found, in the order of their rows.
-        active = [k for members in self._kinds(self.active) for k in members]
-        found = self._maximum(active, rate, allowance)
+        # Enough of the edges, as the solution has found.
+        found = self._program(self.active, rate).maximize(allowance)
         solution = None if found is None else self._read(found.x, rate)
         if found is None or solution is None:
             return None
-        sizes = [self.edges[k].size for k in active]
-        lengths = [n * (n + 1) // 2 for n in sizes]
-        # The rows of the edges are the last ones.
-        parts = np.split(found.z[len(found.z) - sum(lengths) :], np.cumsum(lengths)[:-1])
-        duals = {k: unpack(part, n) for k, part, n in zip(active, parts, sizes, strict=True)}
-        return DualSolution(solution, duals)
+        own = found.duals[len(found.duals) - len(self.active) :]
+        return DualSolution(solution, dict(zip(self.active, own, strict=True)))
 
-    def _kinds(self, active: Sequence[int]) -> list[list[int]]:
-        """Group edges in which the same forms, multipliers and forms that vanish enter."""
-        groups: dict[object, list[int]] = {}
+    @cached_property
+    def _starts(self) -> list[int]:
+        """Where the unknowns of each form begin, and behind them the multipliers."""
+        return [0, *(int(end) for end in np.cumsum([n * (n + 1) // 2 for n in self.sizes]))]
+
+    def _program(self, active: Sequence[int], rate: float) -> SemidefiniteProgram:
+        """State the inequalities of some edges at a rate, which are the last blocks."""
+        starts, place = self._starts, {fact: k for k, fact in enumerate(self.scales)}
+        free = starts[-1] + len(place)
+        last = free + sum(len(self._vanishing[k]) for k in active)
+        program, one = SemidefiniteProgram(last + 1), np.ones((1, 1))
+        for first, n in zip(starts, self.sizes, strict=False):
+            form, identity = np.eye(n * (n + 1) // 2), np.eye(n)
+            program.add(0 * identity, [(first, form), (last, packed_columns(-identity[None]))])
+            program.add(identity, [(first, -form)])
+        for k in range(starts[-1], free):
+            program.add(0 * one, [(k, one)])
+            program.add(LARGEST_MULTIPLIER * one, [(k, -one)])
+        factors = self.factors(rate)
         for k in active:
-            edge = self.edges[k]
-            entries = tuple(edge.kept), tuple(edge.left), tuple(fact for fact, _ in edge.facts)
-            own = k if len(self._vanishing[k]) else None
-            key = edge.before, edge.after, edge.size, edge.is_flow, edge.is_strict, entries, own
-            groups.setdefault(key, []).append(k)
-        return list(groups.values())
-
-    def cones(self, active: Sequence[int], rate: float) -> FormsCones:
-        """Return the inequalities of some edges at a rate; those of a kind come together."""
-        factors, place = self.factors(rate), {fact: k for k, fact in enumerate(self.scales)}
-        kinds, free = list[ConeKind](), 0
-        for members in self._kinds(active):
-            first, edges = self.edges[members[0]], [self.edges[k] for k in members]
-            weights = np.array([factors[k] for k in members])[:, None, None]
-            E = np.zeros((1, first.size, self.sizes[first.before]))
-            E[0, np.arange(len(first.kept)), first.kept] = 1.0
-            M = np.zeros((len(edges), first.size, self.sizes[first.after]))
-            M[:, :, first.left] = np.array([edge.M.T for edge in edges])
-            if first.is_flow:
-                N = -np.ldexp(M, self.unit) - weights / 2 * E
-                terms = FormTerm(first.before, E, N), FormTerm(first.before, N, E)
+            edge, weight = self.edges[k], factors[k]
+            E = np.zeros((edge.size, self.sizes[edge.before]))
+            E[np.arange(len(edge.kept)), edge.kept] = 1.0
+            M = np.zeros((edge.size, self.sizes[edge.after]))
+            M[:, edge.left] = edge.M.T
+            before, after = starts[edge.before], starts[edge.after]
+            if edge.is_flow:
+                N = -np.ldexp(M, self.unit) - weight / 2 * E
+                images = [(before, packed_congruence(E, N) + packed_congruence(N, E))]
             else:
-                terms = FormTerm(first.before, E, E), FormTerm(first.after, -weights * M, M)
-            facts = [
-                (place[fact], np.array([edge.facts[i][1] for edge in edges]))
-                for i, (fact, _) in enumerate(first.facts)
+                images = [
+                    (before, packed_congruence(E, E)),
+                    (after, packed_congruence(-weight * M, M)),
+                ]
+            images += [
+                (starts[-1] + place[fact], packed_columns(own[None])) for fact, own in edge.facts
             ]
-            vanishing = self._vanishing[members[0]]
-            facts += [(len(place) + free + k, N[None]) for k, N in enumerate(vanishing)]
-            free += len(vanishing)
-            kinds.append(ConeKind(terms, tuple(facts), first.is_strict, len(edges), first.size))
-        return FormsCones(self.sizes, len(place), kinds, free)
+            if len(vanishing := self._vanishing[k]):
+                images.append((free, packed_columns(vanishing)))
+                free += len(vanishing)
+            if edge.is_strict:
+                images.append((last, packed_columns(-np.eye(edge.size)[None])))
+            program.add(np.zeros((edge.size, edge.size)), images)
+        return program
 
     def factors(self, rate: float) -> list[float]:
         """Return what the rate makes of the inequality of each edge: twice that of a flow.
@@ -227,22 +207,18 @@ class FormsProgram:
         ]
 
     def _read(self, x: Array, rate: float) -> Solution | None:
-        """Take apart what the solver returned; None if there is no margin."""
-        parts = np.split(x[:-1], np.cumsum([n * (n + 1) // 2 for n in self.sizes]))
-        forms = [unpack(part, n) for part, n in zip(parts, self.sizes, strict=False)]
+        """Take apart what the solver returned, in the units of edges; None without a margin."""
+        *packed, rest = np.split(x[:-1], self._starts[1:])
+        forms = [unpack(part, n) for part, n in zip(packed, self.sizes, strict=True)]
         if x[-1] <= 0 or max(np.abs(Q).max() for Q in forms) < NOTHING:
             return None
-        return self._solution(FormsPoint(forms, parts[-1], float(x[-1])), rate)
-
-    def _solution(self, point: FormsPoint, rate: float) -> Solution:
-        """Return what was found in the units of the edges."""
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
             1.0 if edge.is_flow else 1 / f
             for edge, f in zip(self.edges, self.factors(rate), strict=True)
         ]
-        multipliers, free = np.split(point.multipliers, [len(self.scales)])
-        # Where forms vanish, all edges are active, each of a kind of its own.
+        multipliers, free = np.split(rest, [len(self.scales)])
+        # Where forms vanish, all edges are active.
         counts = np.cumsum([len(basis) for basis in self._vanishing])[:-1]
         vanishing = [
             keep * np.tensordot(part, basis, axes=1)
@@ -251,7 +227,7 @@ class FormsProgram:
             )
         ]
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
-        return Solution(point.forms, share * multipliers, vanishing, point.margin)
+        return Solution(forms, share * multipliers, vanishing)
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
         """Return the inequality of an edge without what counts for the rate."""
@@ -279,6 +255,10 @@ class FormsProgram:
         every, _ = inequalities(replace(self.drawing, system=system), self.scales)
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
         return [every[k] for k in first]
+
+    def solution_of(self, Q: Array) -> Solution:
+        """Return a form for all modes, however it was found, as a solution."""
+        return Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
 
     def margins(self, solution: Solution, rate: float) -> Array:
         """Return the smallest eigenvalue of every inequality; it may be a little below zero.
@@ -332,3 +312,130 @@ class FormsProgram:
 def _spaced(count: int, few: int) -> list[int]:
     """Return so many of the first numbers, at about equal distances."""
     return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
+
+
+def rounded_forms(
+    program: FormsProgram,
+    solution: Solution,
+    claim: Fraction,
+    digits: Sequence[int],
+    *,
+    errors: bool = False,
+) -> Iterator[FormsOnGraph]:
+    """Yield roundings of all forms to integers over one denominator.
+
+    The claimed rate holds for the solution in floating point. `errors`: errors that were not
+    solved for are covered, at a rate that leaves room.
+    """
+    drawing, coordinates = program.drawing, program.drawing.coordinates
+    inverses = [np.linalg.inv(one.T) for one in coordinates]
+    balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
+    exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
+    top = max(int(one.exponents.max()) for one in coordinates)
+    scales = np.array([*program.scales.values()])
+    multipliers = np.ldexp(solution.multipliers * scales, -program.unit)
+    found = dict(zip(program.scales, multipliers, strict=True))
+    if errors:
+        taus, claim = _allow_for(program, solution, claim)
+        if claim >= 1:
+            return
+        found |= taus
+    for bits in digits:
+        if bits != digits[-1] and not errors:
+            coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+            own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
+            if not program.margins(replace(solution, forms=own), float(claim)).min() > 0:
+                continue
+        log2 = bits + 2 * top
+        whole = [
+            round_form(Q, top - one.exponents, bits - exponent)
+            for one, Q in zip(coordinates, balanced, strict=True)
+        ]
+        nodes = []
+        for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
+            kept = entries_of(drawing, k, states_at(drawing, node))
+            nodes.append(Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept)))
+        values = numerators(np.array([*found.values()]), log2 - exponent)
+        facts = tuple(
+            Multiplier(name, value, target)
+            for (name, b), value in zip(found, values, strict=True)
+            for target in ([None] if b is None else drawing.like(b))
+        )
+        graph = replace(
+            drawing.graph,
+            nodes=tuple(nodes),
+            denominator_log2=max(log2, 0),
+            rate=claim,
+            multipliers=facts,
+        )
+        if graph.stays and graph.stays.leaving and program.time is Time.CONTINUOUS:
+            # How finely stays of any length are enclosed.
+            if (pieces := enough_pieces(drawing.system, graph)) is None:
+                continue
+            graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
+        if program.degree > 1:
+            forms = _round_vanishing(program, graph, solution, bits - exponent, top)
+            graph = replace(graph, vanishing=forms)
+        yield graph
+
+
+def _round_vanishing(
+    program: FormsProgram, graph: FormsOnGraph, solution: Solution, bits: int, top: int
+) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """Round forms so that they vanish exactly, in the units of the exact inequalities."""
+    found, timed = [], [k for k, edge in enumerate(program.every) if edge.is_strict]
+    for k, (_, step, _) in zip(timed, graph.edges_in_time(program.drawing.system), strict=True):
+        edge = program.every[k]
+        assert isinstance(step, Step)  # polynomials are enclosed by nobody
+        exponents = program.drawing.coordinates[edge.before].exponents[edge.kept]
+        N = round_form(solution.vanishing[program.stands_for[k]], top - exponents, bits)
+        factor, unit = _factor(step, program.degree, graph.rate), program.unit * edge.is_flow
+        scaled = [[_shift(factor * entry, -unit) for entry in row] for row in N]
+        groups = products(program.variables(edge.size), program.degree)
+        found.append(tuple(map(tuple, make_vanish(scaled, groups))))
+    return tuple(found)
+
+
+def _allow_for(
+    program: FormsProgram, solution: Solution, claim: Fraction
+) -> tuple[dict[Fact, float], Fraction]:
+    """Return multipliers of errors, and what is left of a rate if a form loses what they take.
+
+    In the norm of the forms, an error of size ``s`` times that of the state takes ``2 s`` of
+    V; with the multiplier ``|C| / |q|`` half of it is taken by either term.
+    """
+    pushed, sizes = dict[Fact, float](), dict[Fact, float]()
+    loss: dict[int, set[Fact]] = {}
+    for edge in program.every:
+        L, inverse = (
+            np.linalg.cholesky(solution.forms[k][np.ix_(entries, entries)])
+            for k, entries in ((edge.after, edge.left), (edge.before, edge.kept))
+        )
+        inverse = np.linalg.inv(inverse)
+        for error in edge.errors:
+            fact = error.fact
+            pushed[fact] = max(pushed.get(fact, 0.0), float(np.linalg.norm(error.column @ L)))
+            size = float(np.linalg.norm(inverse @ error.q))
+            sizes[fact] = max(sizes.get(fact, 0.0), size)
+            loss.setdefault(fact[1] or 0, set()).add(fact)
+    worst = max(sum(2 * pushed[f] * sizes[f] for f in facts) for facts in loss.values())
+    taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
+    left = float(claim) ** 2 + LOST_TO_ERRORS * worst
+    return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+
+
+def _factor(step: Step, degree: int, rate: Fraction) -> int:
+    """Return what the exact inequality of a lifted step is multiplied with."""
+    moved = lifted(step, degree, rate)
+    if not step.is_flow:
+        return int(moved.units[0]) ** 2
+    return (2 * degree * rate * moved.over).denominator * moved.over
+
+
+def _shift(value: int, exponent: int) -> int:
+    return value << exponent if exponent >= 0 else value >> -exponent
+
+
+def _rounded(Q: Array, bits: int) -> Array:
+    """Round to so many bits after the binary point, in floating point."""
+    return np.asarray(np.ldexp(np.rint(np.ldexp((Q + Q.T) / 2, bits)), -bits))

@@ -12,12 +12,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
-from nrs_design.search.decay import rate_of
+from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
-from nrs_design.search.rounding import position_of, rate_at
+from nrs_design.search.graphs import draw_balanced
+from nrs_design.search.rates import at_own_rate
+from nrs_design.search.rounding import digits, position_of, rate_at
 from nrs_design.work import Allowance, NotAffordableError
 
 # Work per round and per multiplication in it.
@@ -40,6 +44,30 @@ class GradientResult:
 
     Q: Matrices | None
     updates: int
+
+
+def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a common quadratic function; then, if asked to, raise its rate."""
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    # The rungs below need time as well.
+    family = replace(family, allowance=family.allowance.part(0.5))
+    result = find_by_gradient(family)
+    if result.Q is None:
+        return f"not converged after {result.updates} updates"
+    words = f"found after {result.updates} updates"
+    if family.optimize_rate:
+        faster = find_faster_by_gradient(family, result.Q)
+        more = f"with a decay rate near the largest after {faster.updates} more"
+        if faster.Q is not None:
+            yield from _roundings(family, faster.Q, f"{words}, {more}")
+    yield from _roundings(family, result.Q, words)
+    return None
+
+
+def _roundings(family: Family, Q: Matrices, words: str) -> Iterator[Candidate[FormsOnGraph]]:
+    program = FormsProgram(draw_balanced(family))
+    yield from at_own_rate(program, program.solution_of(Q), family, digits(), words)
 
 
 def find_by_gradient(family: Family) -> GradientResult:
@@ -191,6 +219,15 @@ def _coordinates(family: Family, norm: Matrices) -> Matrices:
     if wanted == Coordinates.GIVEN:
         return np.diag(np.ldexp(1.0, -family.exponents))
     return np.eye(len(norm))
+
+
+def rate_of(matrices: Matrices, Q: Matrices, time: Time) -> float:
+    """Return the best rate that a given Q shows, in 1/s or as the contraction per step."""
+    T = round_coordinates(Q)
+    modes = np.linalg.inv(T) @ matrices @ T
+    if time is Time.DISCRETE:
+        return float(np.linalg.norm(modes, 2, axis=(1, 2)).max())
+    return -float(np.linalg.eigvalsh(modes + np.swapaxes(modes, 1, 2)).max()) / 2
 
 
 def _position(family: Family, Q: Matrices) -> float:

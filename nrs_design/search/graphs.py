@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
@@ -19,29 +20,43 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance, own_norm, round_coordinates, scale_states, separating
-from nrs_design.search.branches import best_words, round_forms
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidates
-from nrs_design.search.cycle import growing_cycles
-from nrs_design.search.decay import limit_rate
+from nrs_design.search.balance import (
+    balance,
+    mean_norm,
+    round_coordinates,
+    scale_states,
+    separating,
+)
+from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates
-from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.family import (
+    Family,
+    free_motions,
+    separating_coordinates,
+    stand_ins,
+    to_floats,
+)
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.graph import Graph
-from nrs_design.search.lifted import monomial_weights
-from nrs_design.search.motions import free_motions, separating_coordinates
-from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
-from nrs_design.search.rates import POLYNOMIAL, Rates, propose
-from nrs_design.search.rounding import digits
-from nrs_design.search.rounds import turns_graph
+from nrs_design.search.graph import Graph, growing_cycles
+from nrs_design.search.polynomial import (
+    conewise_cost,
+    family_cost,
+    functions_cost,
+    monomial_weights,
+    work_of_checks,
+)
+from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, propose
+from nrs_design.search.rounding import digits, round_rate
 from nrs_design.search.stays import round_stays
-from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
-# The same where stays are enclosed.
+# Share of the slowest decay that is claimed of one state.
+BACK_OFF = Fraction(1999, 2000)
+# Digits where stays are enclosed.
 BITS_OF_STAYS = (12, 32, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
@@ -185,35 +200,14 @@ def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
     """
     means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
     apart = round_coordinates if family.system.contact is None else separating
-    if not clock.is_round:
-        graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
-        yield from map(apart, round_forms(graph))
-        return
-    each = [means[min(step, 1)] for step in range(clock.length)]
-    n = family.system.order
-    whole = np.eye(n)
-    for mean in each:
-        whole = mean @ whole
-    radius = float(np.abs(np.linalg.eigvals(whole)).max())
-    share = min(1.0, (KEPT / radius) ** (1 / len(each))) if radius > 0 else 1.0
-    # In coordinates of like size, all is counted at every step.
-    form, forms = own_norm(share ** len(each) * whole, Time.DISCRETE), list[Array]()
-    for mean in reversed(each * 2):
-        form = np.eye(n) / len(each) + share**2 * mean.T @ form @ mean
-        forms.append(form)
-    yield from map(apart, forms[: -len(each) - 1 : -1])
+    graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
+    yield from map(apart, round_forms(graph))
 
 
 def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the slowest round of like modes, or of the worst word."""
-    if not clock.is_round:
-        graph = turns_graph(family, clock)
-        words = best_words(graph, family.allowance.part(WORDS))
-        return max((growth for _, growth in words), default=0.0)
-    first, others = _turns(family, clock)
-    rounds = [np.linalg.matrix_power(B, clock.length - 1) @ A for A in first for B in others]
-    slowest = max(limit_rate(whole[None], Time.DISCRETE) for whole in rounds)
-    return float(slowest ** (1 / clock.length))
+    """Return the contraction per step of the worst word that is found."""
+    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
+    return max((growth for _, growth in words), default=0.0)
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
@@ -299,41 +293,45 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
 
     Where the arithmetic rounds, forms that cover that are tried before others.
     """
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
     lost = family.system.contact is not None
     covered = (True,) if family.system.roundings else ()
     coverings = (*covered, False) if lost or not covered else covered
-    return (yield from _together(family, coverings, lost=lost))
+    return (yield from _together(family, draw_together(family, 1, lost=lost), coverings))
 
 
-def search_raw(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for all modes in the coordinates of the spec, without balancing."""
-    n = family.system.order
-    raw = FormCoordinates(np.zeros(n, dtype=np.int64), np.eye(n))
-    return (yield from _together(family, coordinates=raw))
-
-
-def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a form for all modes in coordinates in which their own norms are round."""
-    return (yield from _together(family))
+def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes, in kept contact, whatever the arithmetic rounds."""
+    drawing = draw_balanced(family)
+    if not family.optimize_rate and drawing.is_finite:
+        # The mean of the modes' own norms often does, and takes no solver.
+        with suppress(np.linalg.LinAlgError):
+            program, Q = FormsProgram(drawing), mean_norm(family.matrices, family.system.time)
+            yield from at_own_rate(program, program.solution_of(Q), family, digits())
+    return (yield from _together(family, drawing, (False,)))
 
 
 def _together(
-    family: Family,
-    coverings: Sequence[bool] = (False,),
-    *,
-    lost: bool = False,
-    coordinates: FormCoordinates | None = None,
+    family: Family, drawing: Drawing, coverings: Sequence[bool]
 ) -> Candidates[FormsOnGraph]:
     """Ask one program for a form for all modes."""
-    if not np.isfinite(family.limit):
-        return OUT_OF_RANGE
-    drawing = draw_together(family, 1, lost=lost)
-    if coordinates is not None:
-        drawing = replace(drawing, coordinates=(coordinates,))
     if not drawing.is_finite:
         return OUT_OF_RANGE
-    program, rates = FormsProgram(drawing), Rates(share=0.5)
-    return (yield from propose(program, family, family.limit, rates, coverings))
+    rates = Rates(share=0.5)
+    return (yield from propose(FormsProgram(drawing), family, family.limit, rates, coverings))
+
+
+def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:
+    """Take ``V(x) = x^2``, at a rate computed exactly: modes may be nearer to 1 than floats are."""
+    system = family.system
+    numbers = [mode.A.fractions()[0][0] for mode in system.modes]
+    claimed = BACK_OFF * -max(numbers)
+    if system.time is Time.DISCRETE:
+        claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
+    rate = round_rate(claimed, system.time)
+    yield Candidate(FormsOnGraph((Node(MODES, ((1,),)),), 0, rate))
+    return None
 
 
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
@@ -371,6 +369,12 @@ def draw_together(family: Family, degree: int, *, lost: bool = False) -> Drawing
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(family))
     return Drawing(system, graph, (0,) * len(places), (own,))
+
+
+def draw_balanced(family: Family) -> Drawing:
+    """Draw a node for all modes, in balanced states, which is nearer to the best of few modes."""
+    own = FormCoordinates(family.exponents, np.eye(len(family.exponents)))
+    return Drawing(family.system, graph_of([MODES], 0), (0,), (own,))
 
 
 def graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnGraph:

@@ -22,8 +22,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import ROUNDING, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.family import Family, to_floats
-from nrs_design.search.motions import separating_coordinates
+from nrs_design.search.family import Family, separating_coordinates, to_floats
 from nrs_design.search.one_form import (
     SHARE,
     Constraint,
@@ -125,7 +124,7 @@ class BoundProgram:
         T = np.eye(n + 1)
         T[1:, 1:] = frame.T
         disturbed = StepUnits.of(T, [1.0] * len(item.channels), len(item.roundings))
-        own = disturbed.balanced(steps).without_weak(steps, len(item.channels))
+        own = disturbed.balanced(steps)
         ends = {
             name: sign * np.array(row.floats()[0]) @ frame.T / frame.level
             for name, row, sign in item.ends(system)

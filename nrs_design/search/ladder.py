@@ -11,7 +11,7 @@ from nrs_design.proof.evidence import Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
-from nrs_design.search.rung import Facts, Rung, Step, _always
+from nrs_design.search.rung import Facts, Rung, Step
 from nrs_design.work import Allowance
 
 # Work of a degree of what is tried before the cheaper rungs.
@@ -23,67 +23,56 @@ def _in(module: str, name: str) -> Callable[..., Any]:
     return late_function(f"nrs_design.search.{module}", name)
 
 
+def _always(facts: Facts) -> bool:
+    """Say yes."""
+    return True
+
+
+def _uniform(facts: Facts) -> bool:
+    return facts.system.is_uniform
+
+
+TOGETHER, MODES = _in("graphs", "search_together"), _in("graphs", "search_modes")
+OBSTRUCTION = _in("obstruction", "search_obstruction")
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
     Rung(
         "quadratic for each controller",
         Method.PERIODIC_QUADRATIC,
-        lambda f: f.counts_stays,
+        Facts.counts_stays,
         _in("counted_stays", "search_stays"),
         clocked=True,
     ),
     Rung(
         "periodic quadratic",
         Method.PERIODIC_QUADRATIC,
-        lambda f: not f.counts_stays,
+        lambda f: not f.counts_stays(),
         _in("graphs", "search_periodic_quadratic"),
         clocked=True,
     ),
-    Rung("rounds", Method.PERIOD, _always, _in("rounds", "search_rounds"), clocked=True),
-    Rung(
-        "suspicious modes",
-        None,
-        lambda f: f.system.is_uniform,
-        _in("unstable_mode", "examine_suspicious_modes"),
-    ),
+    Rung("rounds", Method.PERIOD, _always, _in("period", "search_rounds"), clocked=True),
+    Rung("suspicious modes", None, _uniform, _in("unstable_mode", "examine_suspicious_modes")),
     Rung(
         "one state",
         Method.LMI,
-        lambda f: f.may_share_a_function and not f.may_share_an_ellipsoid,
-        _in("common_quadratic", "decide_one_state"),
+        lambda f: f.may_share_a_function() and f.system.order == 1,
+        _in("graphs", "decide_one_state"),
     ),
-    Rung(
-        "conewise quadratic",
-        Method.CONEWISE_QUADRATIC,
-        lambda f: f.system.contact is not None and f.may_share_an_ellipsoid,
-        _in("graphs", "search_together"),
-    ),
-    Rung(
-        "quadratic, with roundings",
-        Method.LMI,
-        lambda f: (
-            bool(f.system.roundings) and f.system.contact is None and f.may_share_an_ellipsoid
-        ),
-        _in("graphs", "search_together"),
-    ),
+    Rung("conewise quadratic", Method.CONEWISE_QUADRATIC, Facts.loses_contact, TOGETHER),
+    Rung("quadratic, with roundings", Method.LMI, Facts.rounds, TOGETHER),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
     # of the matrices all the same.
-    Rung(
-        "obstruction in contact",
-        Method.OBSTRUCTION,
-        lambda f: f.may_bounce,
-        _in("obstruction", "search_obstruction"),
-    ),
+    Rung("obstruction in contact", Method.OBSTRUCTION, Facts.may_bounce, OBSTRUCTION),
     Rung(
         "conewise mode quadratic",
         Method.CONEWISE_MODE_QUADRATIC,
-        lambda f: f.may_bounce and not f.is_continuous,
+        Facts.bounces_in_steps,
         _in("graphs", "search_conewise_modes"),
     ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
-        lambda f: f.may_bounce and f.is_continuous,
+        Facts.bounces_in_time,
         _in("graphs", "search_conewise_polynomial"),
         cost=_in("polynomial", "conewise_cost"),
         first=QUICK,
@@ -91,77 +80,50 @@ LADDER: tuple[Rung, ...] = (
     # After what proves through the loss of contact, before what speaks of kept contact.
     *(
         Rung(
-            name,
+            f"{what} with loss of contact",
             Method.PERIOD,
             lambda f: f.system.is_losable,
             _in("unstable_contact", "search_contact"),
             clocked=clocked,
             in_kept_contact=False,
         )
-        for clocked, name in (
-            (False, "growth with loss of contact"),
-            (True, "rounds with loss of contact"),
-        )
+        for clocked, what in ((False, "growth"), (True, "rounds"))
     ),
-    Rung(
-        "lmi",
-        Method.LMI,
-        lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_by_lmi"),
-    ),
+    Rung("lmi", Method.LMI, Facts.may_share_an_ellipsoid, _in("graphs", "search_by_lmi")),
     Rung(
         "obstruction",
         Method.OBSTRUCTION,
-        lambda f: f.may_share_a_function and not f.may_bounce,
-        _in("obstruction", "search_obstruction"),
-    ),
-    # The solver may have stalled: other coordinates, before giving up on quadratics.
-    Rung(
-        "lmi, raw",
-        Method.LMI,
-        lambda f: f.may_share_an_ellipsoid,
-        _in("graphs", "search_raw"),
-        only_quadratic=True,
-    ),
-    Rung(
-        "lmi, preconditioned",
-        Method.LMI,
-        lambda f: f.may_share_an_ellipsoid,
-        _in("graphs", "search_preconditioned"),
-        only_quadratic=True,
+        lambda f: f.may_share_a_function() and not f.may_bounce(),
+        OBSTRUCTION,
     ),
     Rung(
         "gradient",
         Method.GRADIENT,
-        lambda f: f.may_share_a_function,
-        _in("common_quadratic", "search_by_gradient"),
-        only_quadratic=True,
+        Facts.may_share_a_function,
+        _in("gradient", "search_by_gradient"),
     ),
     Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),
-    Rung(
-        "constant values",
-        Method.VALUE,
-        lambda f: f.has_values,
-        _in("unstable_value", "search_value"),
-    ),
+    Rung("constant values", Method.VALUE, Facts.has_values, _in("unstable_value", "search_value")),
     Rung(
         "constants quadratic",
         Method.CONSTANTS_QUADRATIC,
-        lambda f: f.has_values,
+        Facts.has_values,
         _in("constants_quadratic", "search_constants_quadratic"),
     ),
     Rung(
         "mode quadratic",
         Method.MODE_QUADRATIC,
         _always,
-        _in("graphs", "search_modes"),
+        MODES,
         # Under arbitrary switching in continuous time, all modes have the same function.
-        in_auto=lambda f: f.has_rules or (f.is_arbitrary and not f.is_continuous),
+        in_auto=lambda f: (
+            f.has_rules() or (f.system.switching.is_arbitrary and not f.is_continuous())
+        ),
     ),
     Rung(
         "quadratic with a memory",
         Method.MEMORY_QUADRATIC,
-        lambda f: f.is_of_words,
+        Facts.is_of_words,
         _in("memory", "search_memory"),
         lengths=_in("memory", "quadratic_memories"),
         first=QUICK,
@@ -169,13 +131,13 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "words in the norms of forms",
         Method.PERIOD,
-        lambda f: f.is_of_words,
-        _in("extremal_words", "search_extremal_words"),
+        Facts.is_of_words,
+        _in("memory", "search_extremal_words"),
     ),
     Rung(
         "quartic with a memory",
         Method.MEMORY_POLYNOMIAL,
-        lambda f: f.is_of_words,
+        Facts.is_of_words,
         _in("memory", "search_quartic_memory"),
         lengths=_in("memory", "quartic_memories"),
         degree=4,
@@ -184,33 +146,28 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "mixture",
         Method.MIXTURE,
-        lambda f: f.is_arbitrary and f.is_continuous,
-        _in("mixture", "search_mixture"),
+        lambda f: f.system.switching.is_arbitrary and f.is_continuous(),
+        _in("unstable_value", "search_mixture"),
     ),
     Rung(
         "polynomial",
         Method.POLYNOMIAL,
-        lambda f: f.may_share_a_function,
+        Facts.may_share_a_function,
         _in("graphs", "search_polynomial"),
         cost=_in("polynomial", "family_cost"),
     ),
     Rung(
         "mode polynomial",
         Method.MODE_POLYNOMIAL,
-        lambda f: f.has_rules and not f.is_continuous,
-        _in("graphs", "search_modes"),
+        lambda f: f.has_rules() and not f.is_continuous(),
+        MODES,
         cost=_in("polynomial", "functions_cost"),
     ),
-    Rung(
-        "period",
-        Method.PERIOD,
-        lambda f: f.system.is_uniform,
-        _in("period", "search_period"),
-    ),
+    Rung("period", Method.PERIOD, _uniform, _in("period", "search_period")),
     Rung(
         "switching at constant values",
         Method.VALUE,
-        lambda f: f.has_values,
+        Facts.has_values,
         _in("unstable_value", "search_switching_at_values"),
     ),
 )

@@ -1,28 +1,37 @@
-"""The largest box of parameters, and the shortest dwell time, that still have a proof."""
+"""How far along an axis there is a proof, and from where on a refutation.
+
+A number on an axis makes a system: a scale of ranges, a delay, a period, a number of misses, a
+dwell time with the opposite sign. The larger it is, the more has to hold. Numbers are decided by
+doubling and bisection; what counts as proved or refuted has evidence that passed the exact check.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from bisect import bisect_left
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import inf
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict, refutes_in_contact
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import NrsDesignError
 from nrs_design.progress import Progress, silent
+from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.tried import Tried, sharpen, sharpened
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
+    from nrs_design.proof.evidence.abstract import Bound
     from nrs_design.search.certification import Certification
 
-LARGEST_SCALE = 64
-STEPS = 8
-DWELL_STEPS = 12
-# A box that is not decided is slow to try: fewer steps for the smallest one that is refuted.
-REFUTED_STEPS = 6
-DOUBLINGS = 3
+# Bisections of an end; a refuted one is slow to look for, as beside it nothing is decided.
+STEPS, PERIOD_STEPS, DWELL_STEPS, REFUTED_STEPS = 8, 4, 12, 6
+# Ranges are stretched by up to this, without a proof no more than so often; periods are doubled or
+# halved so often.
+LARGEST_SCALE, IDLE, DOUBLINGS = 64, 3, 4
+# An exact test of a mode with more samples on their way takes too long.
+FARTHEST_DELAY = 32
 # Proofs for ever shorter dwell times, but none for zero: enough of them.
 HALVINGS = 64
 
@@ -31,19 +40,166 @@ Certify = Callable[[SwitchedSystem], "Certification"]
 
 
 @dataclass(frozen=True)
-class BoxMargin:
-    """How far the declared ranges can be stretched about their nominal values."""
+class Bracket:
+    """The farthest number with a proof, and the nearest that is refuted, where there are any."""
 
-    # Largest scale that was proved, 1 being the declared ranges; None if not even the nominal
-    # values (scale 0) were.
+    # proved, refuted: scales, delays in samples, times in s, numbers of misses.
     proved: Fraction | None
-    # Smallest scale that was refuted; None if the search ended without a refutation. What lies
-    # between the two is undecided.
     refuted: Fraction | None
-    proof: Certification | None  # At the scale `proved`
     end: str = ""  # Where the search for a refutation ended, and why there, if it found none
     # In which contact alone it is refuted, where its loss must be covered; empty for any.
     refuted_in: str = ""
+    proof: Certification | None = None  # At the number that is proved
+
+
+@dataclass(frozen=True)
+class CommandMargin:
+    """Disturbances under which the force limit is proved to be kept, and those that break it."""
+
+    limit: Fraction  # Of the force, in N m
+    # By disturbance: kept up to the first number, in the proportion in which the spec declares
+    # them; broken by a simulated run at the second one; with the unit.
+    bounds: Mapping[str, tuple[Fraction, Fraction, str]]
+
+
+@dataclass(frozen=True)
+class MarginBrackets:
+    """What `--margin` finds beside the box of ranges."""
+
+    # Longest delay of the force sample, from the shortest declared one on; None without sampling.
+    delay: Bracket | None
+    period: Bracket | None  # Periods, each for itself; None without sampling
+    # None where no bound on the force is proved under the disturbances of the spec.
+    command: CommandMargin | None
+
+
+class MarginAxis:
+    """The numbers that were tried, each once, and what was found there.
+
+    `what` and `unit` tell a number to whoever listens before it is decided.
+    """
+
+    def __init__(
+        self,
+        assemble: Assemble,
+        certify: Certify,
+        progress: Progress = silent,
+        what: str = "",
+        unit: str = "",
+        *,
+        whole: bool = False,
+    ) -> None:
+        self._assemble, self._certify, self._progress = assemble, certify, progress
+        self._what, self._unit, self._whole = what, unit, whole
+        # What is found at a number, or why it makes no system.
+        self.found: dict[Fraction, Certification | str] = {}
+
+    def at(self, number: Fraction) -> Certification | str:
+        """Return what is found at a number; it is decided if it was not yet."""
+        if number not in self.found:
+            self._progress(f"{self._what} {self._text(number)}{self._known()}")
+            system = self._assembled(number)
+            self.found[number] = system if isinstance(system, str) else self._certify(system)
+        return self.found[number]
+
+    def is_proved(self, number: Fraction) -> bool:
+        """Tell whether there is a proof at a number."""
+        found = self.at(number)
+        return not isinstance(found, str) and found.verdict is Verdict.PROVED
+
+    def is_refuted(self, number: Fraction) -> bool:
+        """Tell whether there is a refutation at a number, if only in kept contact."""
+        found = self.at(number)
+        if isinstance(found, str):
+            return False
+        return found.verdict is Verdict.REFUTED or found.refuted_in is not None
+
+    def bracket(
+        self,
+        start: Fraction,
+        down: Iterable[Fraction],
+        up: Iterable[Fraction],
+        steps: int = STEPS,
+        idle: float = inf,
+    ) -> Bracket:
+        """Look down for a proof and up for a refutation, and bisect at both ends.
+
+        Without a proof, no more than `idle` numbers are looked at on the way up.
+        """
+        next(filter(self.is_proved, [start, *down]), None)
+        for number in up:
+            if idle <= 0 or any(n <= number and self.is_refuted(n) for n in self.found):
+                break
+            if isinstance(fault := self._assembled(number), str):
+                self.found[number] = fault
+                inside = max(n for n, one in self.found.items() if not isinstance(one, str))
+                self.at(self._sharpened(inside, number, self._makes_system, steps))
+                break
+            idle -= not self.is_proved(number)
+        proved = self._end(self.is_proved, 1, steps)
+        refuted = self._end(self.is_refuted, -1, min(steps, REFUTED_STEPS))
+        proof = None if proved is None else self.found[proved]
+        contact = None if refuted is None else self.found[refuted]
+        assert not isinstance(proof, str)
+        assert not isinstance(contact, str)
+        return Bracket(
+            proved,
+            refuted,
+            self._why_none() if refuted is None else "",
+            "" if contact is None else contact.refuted_in or "",
+            proof,
+        )
+
+    def _end(self, accepts: Callable[[Fraction], bool], sign: int, steps: int) -> Fraction | None:
+        """Return the largest number of a kind, or with the sign -1 the smallest, by bisection."""
+        best = max(filter(accepts, self.found), key=lambda number: sign * number, default=None)
+        beyond = (n for n in self.found if best is not None and sign * n > sign * best)
+        other = min(beyond, key=lambda number: sign * number, default=None)
+        if best is None or other is None:
+            return best
+        return self._sharpened(best, other, accepts, steps)
+
+    def _sharpened(
+        self, accepted: Fraction, other: Fraction, accepts: Callable[[Fraction], bool], steps: int
+    ) -> Fraction:
+        for _ in range(steps):
+            middle = (accepted + other) / 2
+            if self._whole:
+                middle = Fraction(int(middle))
+            if middle in (accepted, other):
+                break
+            accepted, other = (middle, other) if accepts(middle) else (accepted, middle)
+        return accepted
+
+    def _assembled(self, number: Fraction) -> SwitchedSystem | str:
+        try:
+            return self._assemble(number)
+        except NrsDesignError as error:
+            return error.message
+
+    def _makes_system(self, number: Fraction) -> bool:
+        if isinstance(fault := self._assembled(number), str):
+            self.found[number] = fault
+        return not isinstance(fault, str)
+
+    def _why_none(self) -> str:
+        """Say where numbers that are not refuted end, and why there."""
+        longest = max((n for n, one in self.found.items() if not isinstance(one, str)))
+        beyond = min((n for n in self.found if n > longest), default=None)
+        why = "the search ends there"
+        if beyond is not None:
+            why = f"what is beyond makes no system ({self.found[beyond]})"
+        return f"none of up to {self._text(longest)} is refuted: {why}"
+
+    def _known(self) -> str:
+        proved = [n for n in self.found if self.is_proved(n)]
+        refuted = [n for n in self.found if self.is_refuted(n)]
+        known = [f"proved: {self._text(max(proved))}"] if proved else []
+        known += [f"refuted: {self._text(min(refuted))}"] if refuted else []
+        return f" ({', '.join(known)})" if known else ""
+
+    def _text(self, number: Fraction) -> str:
+        return nearly(abs(number), self._unit)
 
 
 def find_margin(
@@ -51,129 +207,134 @@ def find_margin(
     certify: Certify,
     known: Certification | None = None,
     progress: Progress = silent,
-) -> BoxMargin:
-    """Bracket the largest provable scale and the smallest refutable one, then bisect both.
+) -> Bracket:
+    """Find how far declared ranges can be stretched about their nominal values, by which scale.
 
-    A proof for a box is a proof for every smaller one, and a refutation is one for every larger
-    one, so the search needs no more than brackets. Every scale that counts as proved or refuted has
-    evidence that passed the exact check. `known`, found at scale 1, perhaps by a longer search, is
-    the least that is reported. An `AssemblyError` if not even the nominal values make a system.
+    A proof for a box is one for every smaller one, and a refutation one for every larger one.
+    `known`, found at scale 1, perhaps by a longer search, is the least that is reported. An error
+    if not even the nominal values make a system.
     """
-    proofs = {} if known is None else {Fraction(1): known}
-
-    def decide(scale: Fraction) -> Certification | str:
-        system = _assembled(scale, assemble)
-        if isinstance(system, AssemblyError):
-            return system.message
-        proofs[scale] = certify(system)
-        return proofs[scale]
-
-    tried = Tried(decide, progress, "box scaled by")
-    if known is not None:
-        tried.remember(Fraction(1), known)
-    elif tried.makes_no_system(Fraction(0)):
+    axis, one = MarginAxis(assemble, certify, progress, "box scaled by"), Fraction(1)
+    if known is None:
         assemble(Fraction(0))  # Raises what is wrong, and where.
-    if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
-        refuted = _smallest_refuted(tried, assemble)
-        return BoxMargin(None, refuted, None, _end(tried, refuted), tried.refuted_in(refuted))
-    high = Fraction(1)
-    while high <= LARGEST_SCALE and tried.is_proved(high):
-        high *= 2
-    if high <= LARGEST_SCALE:
-        sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
-    refuted = _smallest_refuted(tried, assemble)
-    low = max(tried.that_are(Verdict.PROVED))
-    return BoxMargin(low, refuted, proofs[low], _end(tried, refuted), tried.refuted_in(refuted))
+    else:
+        axis.found[one] = known
+    up = _doubled(one, Fraction(LARGEST_SCALE))
+    return axis.bracket(one, [Fraction(0)], up, idle=IDLE)
 
 
-def _assembled(scale: Fraction, assemble: Assemble) -> SwitchedSystem | AssemblyError:
-    """Return the system at a scale, or what keeps the scale from making one."""
-    try:
-        return assemble(scale)
-    except AssemblyError as error:
-        return error
+def find_longest_delay(
+    delays: tuple[int, int, int],
+    assemble: Callable[[int, int], SwitchedSystem],
+    certify: Certify,
+    unstable_in: Callable[[SwitchedSystem], str | None],
+    known: Certification,
+    progress: Progress = silent,
+) -> Bracket:
+    """Find the longest delay with a proof, and the shortest that is refuted, in samples.
+
+    Of delays that are the shortest, the longest declared and the longest there is, loops are
+    assembled of ranges. The modes of a range are those of every shorter one, and more. Beyond, one
+    delay that is unstable by itself refutes all ranges that reach it: `unstable_in`, a quick test,
+    tells in which contact, empty for any. `known` is on the declared ones.
+    """
+    declared, longest = map(Fraction, delays[1:])
+    axis = MarginAxis(lambda n: assemble(delays[0], int(n)), certify, progress, "delay", whole=True)
+    axis.found[declared] = known
+    down = (Fraction(n) for n in range(delays[1] - 1, delays[0] - 1, -1))
+    found = axis.bracket(declared, down, _doubled(declared, longest))
+    if found.refuted is not None:
+        return found
+
+    def where(delay: int) -> str | None:
+        progress(f"delay {delay} alone")
+        try:
+            return unstable_in(assemble(delay, delay))
+        except NrsDesignError:
+            return None  # What makes no loop shows nothing.
+
+    beyond = range(delays[2], FARTHEST_DELAY + 1)
+    first = bisect_left(beyond, True, key=lambda delay: where(delay) is not None)
+    if first < len(beyond):
+        contact = where(beyond[first]) or ""
+        return replace(found, refuted=Fraction(beyond[first]), refuted_in=contact, end="")
+    return replace(found, end=f"{found.end}, nor is one of up to {FARTHEST_DELAY} by itself")
 
 
-def _end(tried: Tried[Fraction], refuted: Fraction | None) -> str:
-    """Say where scales that are not refuted end, and why there; nothing if one is refuted."""
-    return "" if refuted is not None else tried.end("scaled by up to", "wider ones make no system")
+def find_longest_period(
+    period: Fraction,
+    assemble: Assemble,
+    certify: Certify,
+    known: Certification,
+    progress: Progress = silent,
+) -> Bracket:
+    """Find a long period with a proof and a short one that is refuted, each for itself, in s.
+
+    Other periods make other systems: nothing follows from one for the ones in between. `known` is
+    on the period of the spec.
+    """
+    axis = MarginAxis(assemble, certify, progress, "period", "s")
+    axis.found[period] = known
+    factors = [Fraction(2) ** k for k in range(1, DOUBLINGS + 1)]
+    down, up = ([period / f for f in factors], [period * f for f in factors])
+    return axis.bracket(period, down, up, PERIOD_STEPS)
 
 
-def _smallest_refuted(tried: Tried[Fraction], assemble: Assemble) -> Fraction | None:
-    """Return the smallest scale found to be refuted: from what was tried, or beyond it."""
-    high = max(*tried.all(), Fraction(1))
-    for _ in range(DOUBLINGS):
-        if tried.that_are(Verdict.REFUTED) or tried.makes_no_system(high):
-            break
-        high *= 2
-        tried.is_refuted(high)
-    if not tried.that_are(Verdict.REFUTED) and tried.makes_no_system(high):
-
-        def makes_system(scale: Fraction) -> bool:
-            system = _assembled(scale, assemble)
-            if isinstance(system, AssemblyError):
-                tried.remember(scale, system.message)
-            return not isinstance(system, AssemblyError)
-
-        tried.is_refuted(sharpen(tried.longest(), high, STEPS, makes_system))
-    return sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=False)
-
-
-@dataclass(frozen=True)
-class DwellMargin:
-    """How short the time between switches may be."""
-
-    # Shortest dwell time that was proved, in s; zero if arbitrary switching is stable; None if none
-    # was.
-    proved: Fraction | None
-    refuted: Fraction | None  # Longest one that was refuted
-    proof: Certification | None  # At `proved`
-    longest: Fraction  # Longest dwell time that the search has decided about, from zero on
-    refuted_in: str = ""  # As of `BoxMargin`
+def find_most_misses(
+    declared: int,
+    most: int,
+    assemble: Assemble,
+    certify: Certify,
+    known: Certification,
+    progress: Progress = silent,
+) -> Bracket:
+    """Bracket how many steps may be missed, up to `most`; `known` is on the declared number."""
+    axis = MarginAxis(assemble, certify, progress, "misses", whole=True)
+    axis.found[Fraction(declared)] = known
+    down = (Fraction(declared >> k) for k in range(1, declared.bit_length()))
+    return axis.bracket(Fraction(declared), down, _doubled(Fraction(declared), Fraction(most)))
 
 
 def find_shortest_dwell(
-    system: SwitchedSystem,
-    certify: Certify,
-    known: Certification | None = None,
-    progress: Progress = silent,
-) -> DwellMargin:
-    """Find the largest switching rate that has a proof: the shortest provable dwell time.
+    system: SwitchedSystem, certify: Certify, known: Certification, progress: Progress = silent
+) -> Bracket:
+    """Find the largest switching rate that has a proof: the shortest provable dwell time, in s.
 
     A proof for a dwell time is one for every longer one, and a refutation one for every shorter
-    one. The bracket begins at what is known; it is widened by doubling up to the longest dwell time
-    that a spec can declare, or narrowed by halving, and then bisected. One for all modes is sought,
-    and there are no longest ones.
+    one. One for all modes is sought, from what is known up to the longest that a spec can declare;
+    there are no longest ones. Zero if arbitrary switching is stable.
     """
-    proofs: dict[Fraction, Certification] = {}
 
-    def decide(dwell: Fraction) -> Certification:
-        switching = replace(system.switching, dwell_time=dwell, stays=())
+    def assemble(number: Fraction) -> SwitchedSystem:
+        switching = replace(system.switching, dwell_time=-number, stays=())
         # From where motions decay under saturation is no matter of a margin.
-        proofs[dwell] = certify(replace(system, switching=switching, saturation=None))
-        return proofs[dwell]
+        return replace(system, switching=switching, saturation=None)
 
-    tried, longest = Tried(decide, progress, "dwell time", "s"), Fraction(LONGEST_DWELL)
-    if known is not None and (dwell := _common_dwell(system, known)) is not None:
-        tried.remember(dwell, known)
-        proofs[dwell] = known
-    if tried.is_proved(Fraction(0)):
-        return DwellMargin(Fraction(0), None, proofs[Fraction(0)], tried.longest())
-    if _has_unstable_mode(proofs[Fraction(0)]):
-        return DwellMargin(None, longest, None, longest, tried.refuted_in(Fraction(0)))
-    proved = min(tried.that_are(Verdict.PROVED), default=None) or _widen(tried, system)
-    if proved is None:
-        refuted = sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=True)
-        return DwellMargin(None, refuted, None, longest, tried.refuted_in(refuted))
-    for _ in range(HALVINGS):
-        if not tried.is_proved(proved / 2):
-            break
-        proved /= 2
-    low = max(dwell for dwell in tried.all() if dwell < proved)
-    proved = sharpen(proved, low, DWELL_STEPS, tried.is_proved)
-    refuted = sharpened(tried, Verdict.REFUTED, REFUTED_STEPS, up=True)
-    where = tried.refuted_in(refuted)
-    return DwellMargin(proved, refuted, proofs[proved], tried.longest(), where)
+    axis, longest = (
+        MarginAxis(assemble, certify, progress, "dwell time", "s"),
+        Fraction(LONGEST_DWELL),
+    )
+    if (dwell := _common_dwell(system, known)) is not None:
+        axis.found[-dwell] = known
+    free = axis.at(Fraction(0))
+    assert not isinstance(free, str), "it is the system itself"
+    if axis.is_refuted(Fraction(0)) and _has_unstable_mode(free):
+        return Bracket(None, longest, refuted_in=free.refuted_in or "")
+    start = max(filter(axis.is_proved, axis.found), default=None)
+    if start is None:
+        start = min(-_fastest_time(system), *filter(axis.is_refuted, axis.found), Fraction(0))
+    down = (max(start * 2**k, -longest) for k in range(1, HALVINGS))
+    up = (start / 2**k for k in range(1, HALVINGS))
+    found = axis.bracket(start, down, up, DWELL_STEPS, idle=1)
+    proved, refuted = (None if x is None else -x for x in (found.proved, found.refuted))
+    return replace(found, proved=proved, refuted=refuted)
+
+
+def _doubled(start: Fraction, most: Fraction) -> Iterable[Fraction]:
+    """Yield numbers beyond a start, twice as large each, and at last the largest."""
+    while start < most:
+        start = min(2 * start or Fraction(1), most)
+        yield start
 
 
 def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | None:
@@ -197,20 +358,24 @@ def _has_unstable_mode(found: Certification) -> bool:
     return evidence is not None and evidence.names_unstable_mode
 
 
-def _widen(tried: Tried[Fraction], system: SwitchedSystem) -> Fraction | None:
-    """Double the dwell time until it is proved, from the modes' own time or what is refuted."""
-    dwell = max((*tried.that_are(Verdict.REFUTED), _fastest_time(system)))
-    while dwell < LONGEST_DWELL:
-        if tried.is_proved(dwell):
-            return dwell
-        dwell *= 2
-    longest = Fraction(LONGEST_DWELL)
-    return longest if tried.is_proved(longest) else None
-
-
 def _fastest_time(system: SwitchedSystem) -> Fraction:
     """Return a power of two near one over the largest entry of all modes, in s."""
     entries = (abs(e) for mode in system.modes for row in mode.A.fractions() for e in row)
     largest = max(entries, default=Fraction(0)) or Fraction(1)
     size = largest.denominator.bit_length() - largest.numerator.bit_length()
     return Fraction(2) ** size
+
+
+def command_margin(found: Bound, reached: float) -> CommandMargin | None:
+    """Return what the disturbances may be for the limit of an output, by proportion.
+
+    `reached` is what the output of a simulated run reaches under the disturbances of a checked
+    bound.
+    """
+    limit = found.output.limit
+    if limit is None or not reached > 0:
+        return None
+    kept, broken = limit / found.level, limit / Fraction(reached)
+    return CommandMargin(
+        limit, {c.name: (kept * c.bound, broken * c.bound, c.unit) for c in found.channels}
+    )

@@ -8,18 +8,21 @@ Automatica 72, 2016). The longer the words, the nearer to the truth is what thei
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
+from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence import FormsOnGraph, GrowingSequence
 from nrs_design.proof.evidence.graph import MAX_MONOMIALS, MAX_SETS, MODES, Arc, Node
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import balance
+from nrs_design.search.balance import balance, round_coordinates
+from nrs_design.search.branches import StepGraph, best_words
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
-from nrs_design.search.drawing import Drawing
+from nrs_design.search.drawing import Drawing, Solution
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
@@ -29,10 +32,11 @@ from nrs_design.search.graphs import (
     lifted_coordinates,
     limit_of_cycles,
 )
+from nrs_design.search.period import NOTHING_GROWS, powers
 from nrs_design.search.polynomial import PER_CHECK, form_sizes
 from nrs_design.search.rates import POLYNOMIAL, propose
 from nrs_design.search.sdp import program_cost
-from nrs_design.work import Cost
+from nrs_design.work import Allowance, Cost
 
 # The check follows sets of nodes, of which there are as many as words of any length up to that of
 # the memory.
@@ -41,6 +45,15 @@ MOST_WORDS = MAX_SETS // 2
 LONGEST, MOST_EDGES = 24, 2048
 
 Word = tuple[str, ...]
+Array = NDArray[np.float64]
+
+# Steps of a word, and the work of a program whose forms give the norms.
+LONGEST, WORK = 400, 0.1
+# The least growth that forms show is found to this share of what it is above that of a word.
+SHARE, NEAR = 0.2, 1e-4
+HALVINGS = 12
+# What forms are to show at first, where a word that grows by one is sought, and then.
+BOUNDS = (1.05, 1.5, 6.0)
 
 
 def words(system: SwitchedSystem, length: int) -> list[Word] | None:
@@ -151,3 +164,85 @@ def search_memory(family: Family, length: int, degree: int = 1) -> Candidates[Fo
 def search_quartic_memory(family: Family, length: int) -> Candidates[FormsOnGraph]:
     """Search for forms of degree 4 that remember so many steps."""
     return (yield from search_memory(family, length, 2))
+
+
+def least_growth(
+    program: FormsProgram, allowance: Allowance, low: float, high: float
+) -> tuple[float, Solution] | None:
+    """Return nearly the least growth per step that forms show, and them; None above a bound.
+
+    In discrete time: `low` is a growth that some word has, `high` one that forms are to show.
+    """
+    if (solution := program.solve(high, allowance)) is None:
+        return None
+    best, bottom = (high, solution), low
+    for _ in range(HALVINGS):
+        if best[0] - bottom <= max(SHARE * (best[0] - low), NEAR * low):
+            break
+        middle = (best[0] + bottom) / 2
+        found = program.solve(middle, allowance)
+        bottom, best = (middle, best) if found is None else (bottom, (middle, found))
+    return best
+
+
+def words_in_norms(
+    program: FormsProgram, solution: Solution, allowance: Allowance, floor: float
+) -> Iterator[tuple[tuple[int, ...], float]]:
+    """Yield closed words in the norms of forms, each of which grows more than all before it.
+
+    A word is of edges in the graph of steps of the system, with its growth per step. The program is
+    of quadratic forms that `draw_memory` drew. Words that grow by no more than the floor are not
+    looked for; those for which work or memory do not suffice end the search.
+    """
+    system = program.drawing.system
+    matrices = np.array([mode.A.floats() for mode in system.modes])
+    steps = StepGraph.of(system, matrices)
+    if steps is None or steps.has_choice:
+        return
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    graph, free = program.drawing.graph, system.switching.is_arbitrary
+    own, places = _edges_of(steps, free=free), [node.place for node in graph.nodes]
+    rows = list[tuple[int, int, int]]()
+    for a, step, b in graph.edges_in_time(system):
+        key = tuple(index[name] for name in ((step.mode,) if free else (places[a], places[b])))
+        if key not in own:
+            return  # A stay of several steps is none of this graph.
+        rows.append((a, b, own[key]))
+    order = np.argsort([a for a, *_ in rows], kind="stable")
+    sources, targets, edges = np.array(rows)[order].T
+    maps = np.array([program.every[k].M for k in order])
+    none = np.zeros(len(rows), dtype=np.int64)
+    lifted = StepGraph((), sources, targets, none, none, maps, len(places), has_choice=False)
+    T = np.array([round_coordinates(Q) for Q in solution.forms])
+    for word, growth in best_words(lifted, allowance, floor, T, LONGEST):
+        yield tuple(int(edges[k]) for k in word), growth
+
+
+def _edges_of(steps: StepGraph, *, free: bool) -> dict[tuple[int, ...], int]:
+    """Return the edge of each mode, or of each pair of modes that follow each other."""
+    every = range(len(steps.modes))
+    if free:
+        return {(int(steps.modes[k]),): k for k in every}
+    if steps.count != len(steps.names):
+        return {}
+    return {(int(steps.sources[k]), int(steps.targets[k])): k for k in every}
+
+
+def search_extremal_words(family: Family) -> Candidates[GrowingSequence]:
+    """Search for a word that grows, in the norms of forms that remember some steps."""
+    system, allowance = family.system, family.allowance
+    fitting = [length for length, cost in memories(system).items() if cost.work <= WORK]
+    if not fitting or not np.isfinite(family.matrices).all():
+        return NOTHING_GROWS
+    program = FormsProgram(draw_memory(system, fitting[-1]))
+    for high in BOUNDS:
+        if (found := least_growth(program, allowance, 1.0, high)) is not None:
+            break
+    else:
+        return NOTHING_GROWS
+    steps = StepGraph.of(system, np.array([mode.A.floats() for mode in system.modes]))
+    if steps is not None:
+        for word, growth in words_in_norms(program, found[1], allowance, 1.0):
+            sequence, edges = steps.sequence(word)
+            yield from powers(system, sequence, edges, growth ** len(word))
+    return NOTHING_GROWS

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.balance import time_unit
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import digits
-from nrs_design.search.sdp import Blocks, begin, program_cost, symmetric_basis, unpack
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -43,22 +43,20 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     Returns the X_i, shape (m, n, n), if s > 0; else None. Modes are preferably balanced, and few.
     """
     m, n = matrices.shape[:2]
-    basis, identity = symmetric_basis(n), np.eye(n)
+    basis, zero = symmetric_basis(n), np.zeros((n, n))
     own = len(basis)
-    cost = program_cost(m * own + 1, own, [(n, 2 * own)] * (m + 1))
-    what = f"a program of {m * own + 1} unknowns and {m + 1} blocks"
-    begun = begin(allowance or Allowance(), cost, what)
     half = np.ldexp(matrices, time_unit(matrices, time))[:, None] @ basis
     images = half + np.swapaxes(half, -1, -2)
     if time is Time.DISCRETE:
         images = half @ np.swapaxes(matrices, -1, -2)[:, None] - basis
-    blocks = Blocks()
+    program = SemidefiniteProgram(m * own + 1)
     for k in range(m):
-        blocks.add(0.0, dict(enumerate(basis, k * own)))
-    blocks.add(0.0, {**dict(enumerate(np.concatenate(images))), m * own: -identity})
-    traces = -np.trace(basis, axis1=1, axis2=2)[:, None, None]
-    blocks.add(1.0, dict(enumerate(np.tile(traces, (m, 1, 1)))))
-    found = blocks.maximize(m * own + 1, begun)
+        program.add(zero, [(k * own, np.eye(own))])
+    margin = (m * own, packed_columns(-np.eye(n)[None]))
+    program.add(zero, [(0, packed_columns(images.reshape(-1, n, n))), margin])
+    traces = -np.trace(basis, axis1=1, axis2=2)
+    program.add(np.ones((1, 1)), [(0, np.tile(traces, m)[None])])
+    found = program.maximize(allowance or Allowance())
     if found is None or found.x[-1] <= 0:
         return None
     return unpack(found.x[:-1].reshape(m, own), n)

@@ -11,7 +11,6 @@ are those of the exact check (`nrs_design.proof.steps`). In free motion, Q has n
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -22,20 +21,16 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Acting, Step, steps_of
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.drawing import FloatStep
 from nrs_design.search.family import NEARLY
-from nrs_design.search.float_step import FloatStep
 from nrs_design.search.rounding import numerators, unscale
-from nrs_design.search.sdp import Blocks, begin, program_cost, symmetric_basis
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
 BITS = (30, 40, 50, 60)
 SHARE = "share"
-# What is less in a product, relative to it, is no factor of it.
-FELT = 1e-2
-# How much less than the others a disturbance pushes that is weak.
-WEAK = 1e-3
 
 
 @dataclass(frozen=True)
@@ -44,7 +39,6 @@ class StepUnits:
 
     T: Array  # Shape (n, n). Its leading block is that of free motion.
     others: Array  # Units of the disturbances, then of the errors
-    weak: tuple[int, ...] = ()  # Disturbances that do next to nothing: their products are left out
 
     @classmethod
     def of(cls, T: Array, disturbances: Sequence[float], errors: int) -> StepUnits:
@@ -69,15 +63,6 @@ class StepUnits:
         others[len(others) - count :] = np.sqrt(units)
         return replace(self, others=others)
 
-    def without_weak(self, steps: Iterable[Step], disturbances: int) -> StepUnits:
-        """Leave out products of disturbances that do next to nothing in contact."""
-        pushed = np.zeros(disturbances)
-        for step in steps:
-            if step.source == CONTACT:
-                columns = StepInequality.of(step, self).M[:, step.states :][:, :disturbances]
-                pushed = np.maximum(pushed, np.abs(columns).max(axis=0))
-        return replace(self, weak=tuple(np.flatnonzero(pushed < WEAK * pushed.max())))
-
 
 @dataclass(frozen=True)
 class StepInequality:
@@ -87,7 +72,6 @@ class StepInequality:
     states: int
     M: Array
     facts: dict[str, Array]  # What each multiplier adds
-    names: tuple[str, ...]  # Of all multipliers; those without a fact are zero
     errors: tuple[tuple[float, float], ...]  # How large: what each does, and what it comes from
     is_flow: bool
 
@@ -109,9 +93,8 @@ class StepInequality:
             row, e = own.rows(q, n), own.rows(unit[i], n)
             facts[name] = np.outer(e, e) - np.outer(row, row)
             errors.append((float(np.linalg.norm(M[:, i])), float(np.linalg.norm(row))))
-        needed = {name: form for name, form in facts.items() if _is_needed(form, n, own.weak)}
-        kind = step.source, step.target, after, len(needed), step.is_flow
-        return cls(kind, n, M, needed, tuple(facts), tuple(errors), step.is_flow)
+        kind = step.source, step.target, after, len(facts), step.is_flow
+        return cls(kind, n, M, facts, tuple(errors), step.is_flow)
 
     def images(self, basis: Array, share: float) -> Array:
         """Return what it makes of every form of a basis."""
@@ -136,12 +119,6 @@ class StepInequality:
 
 def _both(left: Array, right: Array) -> Array:
     return np.outer(left, right) + np.outer(right, left)
-
-
-def _is_needed(form: Array, states: int, weak: Sequence[int]) -> bool:
-    """Tell whether a weak disturbance is no factor; its square is needed whatever it does."""
-    felt = (states + k for k in weak if np.abs(form[states + k]).max() > FELT * np.abs(form).max())
-    return all(form[k, k] for k in felt)
 
 
 def plain_steps(
@@ -229,7 +206,7 @@ class OneForm:
             if like is None:
                 kept.append(condition)
                 like = condition
-            for name, other in zip(condition.names, like.names, strict=True):
+            for name, other in zip(condition.facts, like.facts, strict=True):
                 stands.setdefault(name, other)
         for condition in kept:
             for name, form in condition.facts.items():
@@ -242,17 +219,6 @@ class OneForm:
         """The forms that Q is a sum of."""
         return symmetric_basis(self.order)
 
-    def cost(self, bounds: Sequence[Constraint]) -> Cost:
-        """Predict what a solution takes."""
-        k = self.order * (self.order + 1) // 2
-        count = Counter(name for item in self.conditions for name in item.facts)
-        shared = k + 1 + sum(several > 1 for several in count.values())
-        cones = [(item.M.shape[1], k + 1 + len(item.facts)) for item in self.conditions]
-        cones += [(len(bound.constant), k + 1 + len(bound.multipliers)) for bound in bounds]
-        return program_cost(
-            k + 1 + len(self.scales), shared, [*cones, *[(1, 1)] * len(self.scales)]
-        )
-
     def solve(
         self,
         share: float,
@@ -261,34 +227,34 @@ class OneForm:
         level: float | None = None,
     ) -> FormSolution | None:
         """Minimize the level; or, for a given one, leave as much to spare as possible."""
-        what = f"an ellipsoid of {len(self.conditions)} steps"
-        begun = begin(allowance, self.cost(bounds), what)
-        basis, blocks = self.basis, Blocks()
+        basis = self.basis
         place = {name: len(basis) + i for i, name in enumerate(self.scales)}
         last = len(basis) + len(place)
+        program = SemidefiniteProgram(last + 1)
 
         def add(
             constant: Array, form: Array, facts: Mapping[str, Array], corner: Array | None
         ) -> None:
-            images = dict(enumerate(form))
-            images |= {place[name]: own / self.scales[name] for name, own in facts.items()}
-            if level is None and corner is not None:
-                images[last] = -corner
-            elif level is not None and corner is not None:
-                images[last] = -np.eye(len(corner))
-                constant = constant + level * corner
-            blocks.add(constant, images)
+            images = [(0, packed_columns(form))]
+            for name, own in facts.items():
+                images.append((place[name], packed_columns(own[None] / self.scales[name])))
+            if corner is not None:
+                spared = corner if level is None else np.eye(len(corner))
+                images.append((last, packed_columns(-spared[None])))
+                constant = constant if level is None else constant + level * corner
+            program.add(constant, images)
 
         for item in self.conditions:
             images = item.images(basis, share)
             add(np.zeros_like(images[0]), images, item.facts, np.zeros_like(images[0]))
         for bound in bounds:
             add(bound.constant, bound.form, bound.multipliers, bound.corner)
+        one = np.ones((1, 1))
         for column in place.values():
-            blocks.add(0.0, {column: np.ones((1, 1))})
+            program.add(0 * one, [(column, one)])
         if level is not None:
-            blocks.add(1.0, {last: -np.ones((1, 1))})
-        reached = blocks.maximize(last + 1, begun)
+            program.add(one, [(last, -one)])
+        reached = program.maximize(allowance)
         # The last unknown is what is left to spare, or the level with its sign changed.
         sign = -1 if level is None else 1
         if reached is None or sign * reached.x[-1] <= 0:

@@ -14,36 +14,25 @@ from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import mean_norm_coordinates
-from nrs_design.search.branches import best_words
+from nrs_design.search.branches import MOST_EDGES, StepGraph, best_words, turns_graph
 from nrs_design.search.candidates import Candidate, Candidates
-from nrs_design.search.cycle import growing_cycles
 from nrs_design.search.family import Family
-from nrs_design.search.graph import Cycle, Graph
+from nrs_design.search.graph import Cycle, Graph, growing_cycles
 from nrs_design.search.rounding import digits
-from nrs_design.search.stay_words import stay_words
-from nrs_design.search.step_graph import StepGraph
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Signal = tuple[Cycle, Array]
 
-GREEDY_STEPS = 3000
-GREEDY_PERIODS = (2, 3, 4, 6, 8)
 FEWEST_BITS = 8
-# Longer cycles are not tried with other times in a second round.
-MAX_DOUBLED = 8
-CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
-ROUNDS = 40
-LONGEST_STEPS = 2000
-# About so many times are looked at to refine those of one cycle; work for each jump of each look,
-# and for each mode in each step of a greedy signal.
+# About so many times are looked at to refine those of one cycle; work for each jump of each look.
 LOOKS = 600
 PER_LOOK = 4e-5
-PER_GREEDY = 8e-6
 # Share of what is left for words of single steps, or of stays on a grid.
 WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
+# Lengths of a stay that are looked at; one of zero is none, and so long of the longest one instead.
+LENGTHS, BRIEF = 5, 1e-6
 
 
 def search_period(family: Family) -> Candidates[GrowingSequence]:
@@ -58,7 +47,11 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
         few = tuple(compress(system.modes, kept))
         system = system.with_modes(few, system.states, system.switching)
         matrices = matrices[kept]
-    yield from _words(system, matrices, allowance.part(WORDS))
+    if system.time is Time.DISCRETE:
+        if (steps := StepGraph.of(system, matrices)) is not None:
+            for word, growth in best_words(steps, allowance.part(WORDS), 1.0):
+                yield from powers(system, *steps.sequence(word), growth ** len(word))
+        return NOTHING_GROWS
     graph = Graph.of(system, matrices)
     for cycle, times in _signals(system, graph, allowance):
         yield from _roundings(system, graph, cycle, times)
@@ -67,68 +60,18 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
     return NOTHING_GROWS
 
 
-def _words(
-    system: SwitchedSystem, matrices: Array, allowance: Allowance
-) -> Iterator[Candidate[GrowingSequence]]:
-    """Yield words of single steps that grow, in discrete time."""
-    graph = StepGraph.of(system, matrices)
-    if graph is None:
-        return
-    for word, growth in best_words(graph, allowance, 1.0):
-        steps, edges = graph.sequence(word)
-        yield from powers(system, steps, edges, growth ** len(word))
-
-
 def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that grow in floating point."""
-    greedy: Iterator[Signal] = iter(())
-    if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
-        greedy = _greedy_signals(graph, allowance)
-    refine = _refined if system.time is Time.CONTINUOUS else _refined_steps
     words = stay_words(graph, allowance.part(WORDS))
-    for cycle, start in chain(words, _twice(growing_cycles(graph, allowance)), greedy):
+    for cycle, start in chain(words, growing_cycles(graph, allowance)):
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
             yield cycle, times
         looks = LOOKS * len(cycle)
         allowance.take(Cost(graph.cost(looks).work + PER_LOOK * looks), "refining a cycle")
-        better = refine(graph, cycle, times)
+        better = _refined(graph, cycle, times)
         if graph.growth(cycle, better) > 0:
             yield cycle, better
-
-
-def _twice(cycles: Iterator[Signal]) -> Iterator[Signal]:
-    """Yield cycles, and short ones once more with two rounds of different times."""
-    for cycle, times in cycles:
-        yield cycle, times
-        if len(cycle) <= MAX_DOUBLED:
-            yield cycle + cycle, np.concatenate([times * 1.2, times * 0.8])
-
-
-def _greedy_signals(graph: Graph, allowance: Allowance) -> Iterator[Signal]:
-    """Yield signals with more steps: what an adversary settles into that always picks the worst.
-
-    It maximizes the mean of the modes' own norms after each short step. Its last few dwell times
-    are taken as a period.
-    """
-    matrices = graph.flows.matrices
-    allowance.charge(PER_GREEDY * GREEDY_STEPS * len(matrices))
-    inverse = np.linalg.inv(mean_norm_coordinates(matrices, Time.CONTINUOUS))
-    step = 0.05 / float(np.abs(np.linalg.eigvals(matrices)).max())
-    transitions = [graph.flows.at(k, np.array(step)).real for k in range(len(matrices))]
-    x, chosen = inverse[0] + 0.1, []
-    for _ in range(GREEDY_STEPS):
-        images = [E @ x for E in transitions]
-        chosen.append(int(np.argmax([np.linalg.norm(inverse @ y) for y in images])))
-        x = images[chosen[-1]] / np.linalg.norm(images[chosen[-1]])
-    runs = [(mode, len(list(group))) for mode, group in groupby(chosen)][1:-1]
-    between = {(jump.source, jump.target): k for k, jump in enumerate(graph.jumps)}
-    for length in GREEDY_PERIODS:
-        modes = [mode for mode, _ in runs[-length:]]
-        switches = list(zip(modes, (*modes[1:], *modes[:1]), strict=True))
-        if len(modes) == length and set(switches) <= between.keys():
-            counts = np.array([count for _, count in runs[-length:]], dtype=float)
-            yield tuple(between[switch] for switch in switches), step * counts
 
 
 def _refined(graph: Graph, cycle: Cycle, times: Array) -> Array:
@@ -154,22 +97,6 @@ def _refined(graph: Graph, cycle: Cycle, times: Array) -> Array:
     return bounded(best.x)
 
 
-def _refined_steps(graph: Graph, cycle: Cycle, times: Array) -> Array:
-    """Change the number of steps of one leg at a time while that helps."""
-    modes = graph.modes(cycle)
-    shortest = graph.shortest[modes]
-    longest = np.minimum(graph.longest[modes], shortest + LONGEST_STEPS)
-    best = float(graph.growth(cycle, times))
-    changes = np.kron(np.eye(len(cycle)), np.array(CHANGES)[:, None])
-    for _ in range(ROUNDS):
-        tried = np.clip(times + changes, shortest, longest)
-        growth = graph.growth(cycle, tried)
-        if not growth.max() > best:
-            break
-        best, times = float(growth.max()), tried[int(growth.argmax())]
-    return times
-
-
 def _roundings(
     system: SwitchedSystem, graph: Graph, cycle: Cycle, times: Array
 ) -> Iterator[Candidate[GrowingSequence]]:
@@ -177,7 +104,7 @@ def _roundings(
     names = [system.modes[mode].name for mode in graph.modes(cycle)]
     edges = tuple(graph.jumps[k].way for k in cycle)
     has_choice = any(jump.way for jump in graph.jumps)
-    for bits in digits(FEWEST_BITS) if system.time is Time.CONTINUOUS else digits()[-1:]:
+    for bits in digits(FEWEST_BITS):
         steps = tuple(
             (name, _admissible(system, name, _short(float(time), bits)))
             for name, time in zip(names, times, strict=True)
@@ -211,3 +138,57 @@ def _short(time: float, bits: int) -> Fraction:
     """Round a time to so many significant bits."""
     shift = bits - int(np.frexp(time)[1])
     return Fraction(round(Fraction(time) * Fraction(2) ** shift)) / Fraction(2) ** shift
+
+
+def search_rounds(family: Family) -> Candidates[GrowingSequence]:
+    """Search for a word of steps that modes may take in turn."""
+    system, clock = family.system, family.system.clock
+    if clock is None:
+        return NOTHING_GROWS
+    graph = turns_graph(family, clock)
+    for word, growth in best_words(graph, family.allowance.part(WORDS), 1.0):
+        runs = groupby(graph.sequence(word)[0], key=lambda step: step[0])
+        signal = tuple((name, sum((count for _, count in run), Fraction(0))) for name, run in runs)
+        yield from powers(system, signal, (), growth ** len(word))
+    return NOTHING_GROWS
+
+
+def stay_words(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
+    """Yield words that grow, each more than all before it; if none does, the best one.
+
+    Nothing is yielded where no stay varies, or some have no longest length and no choice of resets.
+    """
+    varies, choice = graph.longest > graph.shortest, any(jump.way for jump in graph.jumps)
+    if not varies.any() or (np.isinf(graph.longest).any() and not choice):
+        return
+    rows: list[tuple[int, int, int]] = []
+    times, maps = list[float](), list[Array]()
+    for k, jump in sorted(enumerate(graph.jumps), key=lambda item: item[1].source):
+        for time in _lengths(graph, jump.source):
+            rows.append((jump.source, jump.target, k))
+            times.append(time)
+            maps.append(jump.map @ graph.flow(jump.source, np.array(time)).real)
+        if len(rows) > MOST_EDGES:
+            return
+    if not rows:
+        return
+    sources, targets, jumps = np.array(rows, dtype=np.int64).T
+    steps = StepGraph((), sources, targets, sources, jumps, np.array(maps), len(varies), False)
+    best: tuple[Cycle, Array] | None = None
+    for word, growth in best_words(steps, allowance):
+        # A signal begins with its first mode.
+        start = min(range(len(word)), key=lambda k: int(sources[word[k]]))
+        word = word[start:] + word[:start]
+        best = tuple(int(jumps[k]) for k in word), np.array([times[k] for k in word])
+        if growth > 1:
+            yield best
+    if best is not None and not growth > 1:
+        yield best
+
+
+def _lengths(graph: Graph, mode: int) -> Array:
+    first, last = float(graph.shortest[mode]), float(graph.longest[mode])
+    if isinf(last):
+        return graph.times[mode][:LENGTHS]
+    found = np.linspace(first, last, LENGTHS if last > first else 1)
+    return np.asarray(np.maximum(found, BRIEF * last))

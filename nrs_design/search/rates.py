@@ -22,16 +22,10 @@ RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
 BEYOND = 2.0**-10
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
-# The largest rate to this share, where every solution takes long.
-OF_DEAR, NEAR_OF_DEAR = 2.0**-9, 0.998
 
 
 class RateProgram(Protocol[S, E]):
     """What is solved for a rate, in 1/s or per step."""
-
-    @property
-    def is_dear(self) -> bool:
-        """Whether every solution takes long."""
 
     def solve(self, rate: float, allowance: Allowance) -> S | None:
         """Return a solution at a rate."""
@@ -104,19 +98,17 @@ def propose(
         known = sorted(found, key=lambda one: one[0], reverse=True)
         better = [solution for own, solution in known[:1] if own > position]
         yield from () if covered else better
-        if not program.is_dear and (solved := program.solve(float(claim), part)) is not None:
+        if (solved := program.solve(float(claim), part)) is not None:
             yield solved
         yield from better if covered else ()
 
-    best, resolution, nearest = 0.0, rates.resolution, rates.nearest
-    if program.is_dear:
-        resolution, nearest = max(resolution, OF_DEAR), min(nearest, NEAR_OF_DEAR)
+    best = 0.0
     if family.optimize_rate or rates.always:
-        best = bisect_position(shown, resolution, rates.smallest)
+        best = bisect_position(shown, rates.resolution, rates.smallest)
     for covered in coverings:
         bits = WITH_ERRORS if covered else rates.bits
         try:
-            for claim in claims(best, limit, time, nearest, few=rates.few):
+            for claim in claims(best, limit, time, rates.nearest, few=rates.few):
                 for solution in solutions(claim, covered=covered):
                     for evidence in program.roundings(solution, claim, bits, errors=covered):
                         yield Candidate(evidence, rates.words)
@@ -190,5 +182,5 @@ def _bisected(
             found = shown(middle)
         except NotAffordableError:
             break
-        low, high = (low, middle) if found is None else (max(middle, min(found, high)), high)
+        low, high = (low, middle) if found is None else (max(middle, min(found, 1.0)), high)
     return low

@@ -39,71 +39,66 @@ class Facts:
         left = affordable(mode for mode in system.modes if mode.name not in lasting)
         return cls(system, all(fits and is_stable(mode.A, system.time) for mode, fits in left))
 
-    @property
     def is_continuous(self) -> bool:
-        """Whether time is continuous."""
+        """Tell whether time is continuous."""
         return self.system.time is Time.CONTINUOUS
 
-    @property
-    def is_arbitrary(self) -> bool:
-        """Whether switching follows no rule."""
-        return self.system.switching.is_arbitrary
-
-    @property
     def counts_stays(self) -> bool:
-        """Whether modes take turns as dwell times allow."""
+        """Tell whether modes take turns as dwell times allow."""
         return self.system.clock is not None and self.system.clock.counts_stays
 
-    @property
     def may_share_a_function(self) -> bool:
-        """Whether one function for all modes could prove anything."""
+        """Tell whether one function for all modes could prove anything."""
         system = self.system
         return system.is_uniform and not system.switching.resets and self.leaves_stable
 
-    @property
     def may_share_an_ellipsoid(self) -> bool:
-        """Whether a common quadratic function has to be searched for."""
-        return self.may_share_a_function and self.system.order > 1
+        """Tell whether a common quadratic function has to be searched for."""
+        return self.may_share_a_function() and self.system.order > 1
 
-    @property
+    def loses_contact(self) -> bool:
+        """Tell whether one function has to cover the loss of contact."""
+        return self.system.contact is not None and self.may_share_an_ellipsoid()
+
     def may_bounce(self) -> bool:
-        """Whether functions could be for lost contact with springs."""
+        """Tell whether functions could be for lost contact with springs."""
         contact = self.system.contact
-        springs = contact is not None and not contact.pulls
-        return self.may_share_an_ellipsoid and springs
+        return contact is not None and not contact.pulls and self.may_share_an_ellipsoid()
 
-    @property
+    def bounces_in_steps(self) -> bool:
+        """Tell the same of discrete time."""
+        return self.may_bounce() and not self.is_continuous()
+
+    def bounces_in_time(self) -> bool:
+        """Tell the same of continuous time."""
+        return self.may_bounce() and self.is_continuous()
+
+    def rounds(self) -> bool:
+        """Tell whether a quadratic function has to cover what the arithmetic rounds."""
+        kept = self.system.contact is None
+        return bool(self.system.roundings) and kept and self.may_share_an_ellipsoid()
+
     def has_rules(self) -> bool:
-        """Whether there are rules for switching, and no parameter is constant."""
-        return not (self.is_arbitrary or self.has_constant)
+        """Tell whether there are rules for switching, and no parameter is constant."""
+        switching = self.system.switching
+        return not (switching.is_arbitrary or switching.fixed_ends)
 
-    @property
     def is_of_words(self) -> bool:
-        """Whether signals are words of modes in discrete time, and nothing else acts."""
+        """Tell whether signals are words of modes in discrete time, and nothing else acts."""
         system = self.system
         acting = (system.contact, system.flights, system.clock, system.saturation)
-        if any(acting) or system.roundings or self.has_constant:
+        if any(acting) or system.roundings or system.switching.fixed_ends:
             return False
-        return not self.is_continuous and system.is_uniform and len(system.modes) > 1
+        return not self.is_continuous() and system.is_uniform and len(system.modes) > 1
 
-    @property
-    def has_constant(self) -> bool:
-        """Whether a parameter is unknown but constant."""
-        return bool(self.system.switching.fixed_ends)
-
-    @property
     def has_values(self) -> bool:
-        """Whether the modes at the values of a constant parameter can be looked at."""
-        return self.has_constant and self.system.is_uniform and self.leaves_stable
+        """Tell whether the modes at the values of a constant parameter can be looked at."""
+        switching = self.system.switching
+        return bool(switching.fixed_ends) and self.system.is_uniform and self.leaves_stable
 
 
 # What looks for growth, or for why there is no quadratic function.
 REFUTING = (None, Method.PERIOD, Method.VALUE, Method.OBSTRUCTION)
-
-
-def _always(facts: Facts) -> bool:
-    """Say yes."""
-    return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +113,7 @@ class Rung:
     # Predicts what a degree takes, for a rung that is tried with ever higher ones.
     cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
     # Tells whether it is worth trying where it was not asked for alone.
-    in_auto: Callable[[Facts], bool] = _always
-    # Left out once it is known that there is no common quadratic function.
-    only_quadratic: bool = False
+    in_auto: Callable[[Facts], bool] = lambda facts: True
     # A degree that is predicted to take more work is tried with the higher ones, at last.
     first: float = inf
     # Of a rung that rises in the steps that its forms remember: how many, and what that takes.
@@ -132,9 +125,10 @@ class Rung:
 
     def is_idle(self, known: frozenset[Shows]) -> bool:
         """Tell whether it can find nothing more."""
-        if Shows.STABILITY in known and (self.only_quadratic or self.method in REFUTING):
+        gradient = self.method is Method.GRADIENT
+        if Shows.STABILITY in known and (gradient or self.method in REFUTING):
             return True
-        without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
+        without_quadratic = gradient and Shows.NO_COMMON_QUADRATIC in known
         return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:

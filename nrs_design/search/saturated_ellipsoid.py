@@ -24,8 +24,7 @@ from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.motions import separating_coordinates
+from nrs_design.search.family import Family, nearly_same, separating_coordinates, to_floats
 from nrs_design.search.one_form import (
     Constraint,
     FormSolution,
@@ -249,10 +248,9 @@ def _stand_ins(system: SwitchedSystem) -> tuple[list[int], tuple[int, ...]]:
     for modes in (system.modes, system.free):
         if not modes:
             continue
-        names = [mode.name for mode in modes]
-        found = stand_ins(names, to_floats([mode.A for mode in modes]))
-        kept += [first + k for k, name in enumerate(names) if found[name] == name]
-        stands += [kept.index(first + names.index(found[name])) for name in names]
+        same = nearly_same(to_floats([mode.A for mode in modes]))
+        kept += [first + k for k in dict.fromkeys(same)]
+        stands += [kept.index(first + k) for k in same]
         first += len(modes)
     return kept, tuple(stands)
 

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.family import NEARLY, to_floats
-from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.search.family import nearly_same, to_floats
+from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -67,7 +67,8 @@ class SaturatingLoop:
         starts = to_floats(saturation.start.states)[:, :, 0]
         groups = (0,) * len(A)
         if system.time is Time.DISCRETE:
-            groups = _alike(np.concatenate([row[:, :n] for row in rows], axis=1))
+            same = nearly_same(np.concatenate([row[:, :n] for row in rows], axis=1))
+            groups = tuple(sorted({*same}).index(k) for k in same)
         return cls(system.time, A, len(free), columns, tuple(rows), starts, groups, allowance)
 
     @property
@@ -137,20 +138,6 @@ class SaturatingLoop:
         return k >= len(self.A) - self.free
 
 
-def _alike(rows: Array) -> tuple[int, ...]:
-    """Return a number for each row, one for those that floating point hardly tells apart."""
-    kept: list[Array] = []
-    found = []
-    for row in rows:
-        near = NEARLY * np.abs(rows).max()
-        k = next((k for k, other in enumerate(kept) if np.abs(other - row).max() <= near), None)
-        if k is None:
-            k = len(kept)
-            kept.append(row)
-        found.append(k)
-    return tuple(found)
-
-
 @dataclass(frozen=True)
 class Region:
     """The ellipsoid ``z' S^-1 z <= 1``, with its H, and the largest start in it."""
@@ -181,7 +168,7 @@ def largest_region(
 def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     """Return the region with the largest start, for the columns g that fit another."""
     n, held = loop.A.shape[1], loop.held
-    basis, size = symmetric_basis(n), np.zeros((1, 1))
+    basis = symmetric_basis(n)
     unknowns = len(basis) + held * n + 1
     S, Y = np.zeros((unknowns, n, n)), np.zeros((unknowns, held, n))
     S[: len(basis)] = basis
@@ -195,9 +182,13 @@ def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
     blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(held)]
-    x = solve_blocks([*blocks, *_decreases(loop, rate, S, Y, near)], loop.allowance)
-    if x is None or x[-1] <= 0:
+    program = SemidefiniteProgram(unknowns)
+    for constant, images in [*blocks, *_decreases(loop, rate, S, Y, near)]:
+        program.add(constant, [(0, packed_columns(images))])
+    reached = program.maximize(loop.allowance)
+    if reached is None or reached.x[-1] <= 0:
         return None
+    x = reached.x
     found, rows = np.tensordot(x, S, axes=1), np.tensordot(x, Y, axes=1)
     return Region(np.asarray(found), rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
 

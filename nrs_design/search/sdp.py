@@ -6,7 +6,7 @@ takes to solve it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -83,7 +83,7 @@ def _weights(n: int) -> Array:
 
 
 def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) -> Cost:
-    """Predict what `maximize_margin` takes, before its constraints are built.
+    """Predict what a program takes, perhaps before it is built.
 
     `shared` unknowns remain coupled when each cone's own have been eliminated; a cone is its order,
     and how many unknowns it depends on.
@@ -134,105 +134,85 @@ class Maximum:
     """What the solver returned, whatever its status."""
 
     x: Array  # Shape (N,). The unknowns.
-    z: Array  # Shape (M,). The dual variables of the rows.
+    duals: list[Array]  # How much a unit of each block adds to the margin
 
 
-@dataclass(frozen=True, slots=True)
-class Begun:
-    """A program whose predicted work has been charged, and that a solver is to solve."""
-
-    allowance: Allowance  # What may still be done
-    per_step: float  # Work of each step of the solver
-
-    @property
-    def most_steps(self) -> int:
-        """How many steps the solver may make: then it ends with what it has."""
-        more = self.allowance.left / self.per_step if self.per_step else MOST_STEPS
-        return STEPS + int(min(more, MOST_STEPS - STEPS))
-
-    def end(self, steps: int) -> None:
-        """Charge the steps that were made instead of those that were predicted."""
-        self.allowance.charge((steps - STEPS) * self.per_step)
-
-
-def begin(allowance: Allowance, cost: Cost, what: str) -> Begun:
-    """Charge the work that a program is predicted to take, if it fits."""
-    allowance.take(cost, what)
-    return Begun(allowance, cost.per_step)
-
-
-class Blocks:
-    """Matrices that must stay positive semidefinite, of which each depends on few unknowns."""
-
-    def __init__(self) -> None:
-        self._sizes, self._offsets, self._count = list[int](), list[Array](), 0
-        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
-
-    def add(self, constant: Array | float, images: Mapping[int, Array]) -> None:
-        """Add a constant, and what some unknowns add to it, by their numbers."""
-        packed = -pack(np.array([*images.values()]))
-        image, row = np.nonzero(packed)
-        unknowns = np.array([*images])[image]
-        self._entries.append((packed[image, row], self._count + row, unknowns))
-        size = next(iter(images.values())).shape[0]
-        self._offsets.append(pack(np.broadcast_to(constant, (size, size))))
-        self._sizes.append(size)
-        self._count += packed.shape[1]
-
-    def maximize(self, unknowns: int, begun: Begun) -> Maximum | None:
-        """Maximize the last unknown, as `maximize_margin` does."""
-        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
-        matrix = Sparse.of(values, rows, columns, (self._count, unknowns))
-        return maximize_margin(matrix, np.concatenate(self._offsets), self._sizes, begun)
-
-
-def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
+class SemidefiniteProgram:
     """Make the last unknown as large as all blocks stay positive semidefinite with.
 
-    A block is a constant (m, m), and what every unknown adds to it (N, m, m). Returns the unknowns.
+    A block is ``C + sum of x_k F_k`` over the few unknowns that it depends on.
     """
-    unknowns = len(blocks[0][1])
-    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
-    begun = begin(allowance, cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
-    program = Blocks()
-    for constant, images in blocks:
-        program.add(constant, dict(enumerate(images)))
-    found = program.maximize(unknowns, begun)
-    return None if found is None else found.x
+
+    def __init__(self, unknowns: int) -> None:
+        self.unknowns = unknowns
+        self._offsets, self._count = list[Array](), 0
+        self._sizes, self._columns = list[int](), list[NDArray[np.int64]]()
+        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
+
+    def add(self, constant: Array, images: Iterable[tuple[int, Array]]) -> None:
+        """Add a block: its constant, and packed forms of unknowns as columns, from a first one."""
+        columns = list[NDArray[np.int64]]()
+        for first, image in images:
+            row, column = np.nonzero(image)
+            self._entries.append((-image[row, column], self._count + row, first + column))
+            columns.append(first + column)
+        self._offsets.append(pack(constant))
+        self._sizes.append(len(constant))
+        self._columns.append(np.unique(np.concatenate(columns)))
+        self._count += len(self._offsets[-1])
+
+    def cost(self) -> Cost:
+        """Predict what a solution takes: unknowns of one block alone are eliminated with it."""
+        blocks = np.bincount(np.concatenate(self._columns), minlength=self.unknowns)
+        cones = zip(self._sizes, map(len, self._columns), strict=True)
+        return program_cost(self.unknowns, int((blocks > 1).sum()), cones)
+
+    def maximize(self, allowance: Allowance) -> Maximum | None:
+        """Return what the solver returned, whatever its status; None if that is not finite.
+
+        The steps that it made are charged.
+        """
+        import clarabel
+
+        cost, count = self.cost(), self.unknowns
+        allowance.take(cost, f"a program of {count} unknowns and {len(self._sizes)} blocks")
+        more = allowance.left / cost.per_step
+        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
+        matrix = Sparse.of(values, rows, columns, (self._count, count))
+        objective, none = np.zeros(count), np.zeros(0)
+        objective[-1] = -1.0
+        quadratic = Sparse.of(none, none, none, (count, count))
+        cones = [clarabel.PSDTriangleConeT(n) for n in self._sizes]
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_threads = 1
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
+        settings.max_iter = STEPS + int(min(more, MOST_STEPS - STEPS))
+        settings.time_limit = allowance.fuse.left
+        given = quadratic, objective, matrix, np.concatenate(self._offsets), cones
+        solution = clarabel.DefaultSolver(*given, settings).solve()
+        if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
+            # It fails at once on a few programs that it has scaled, and solves them unscaled.
+            settings.equilibrate_enable = False
+            solution = clarabel.DefaultSolver(*given, settings).solve()
+        allowance.charge((solution.iterations - STEPS) * cost.per_step)
+        x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
+        if x.shape != (count,) or not (np.isfinite(x).all() and np.isfinite(z).all()):
+            return None
+        ends = np.cumsum([n * (n + 1) // 2 for n in self._sizes])[:-1]
+        duals = zip(np.split(z, ends), self._sizes, strict=True)
+        return Maximum(x, [unpack(part, n) for part, n in duals])
 
 
-def maximize_margin(
-    rows: Sparse, offset: Array, sizes: Sequence[int], begun: Begun
-) -> Maximum | None:
-    """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
+def packed_columns(forms: Array) -> Array:
+    """Return forms, shape (N, s, s), as columns of a block."""
+    return pack(forms).T
 
-    The cones are packed positive semidefinite matrices of these sizes. Returns what the solver
-    returned, whatever its status; None if that is not finite.
-    """
-    import clarabel
 
-    variables = rows.shape[1]
-    objective = np.zeros(variables)
-    objective[-1] = -1.0
-    cones = [clarabel.PSDTriangleConeT(n) for n in sizes]
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.max_threads = 1
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
-    settings.max_iter = begun.most_steps
-    settings.time_limit = begun.allowance.fuse.left
-    none = np.zeros(0)
-    quadratic = Sparse.of(none, none, none, (variables, variables))
-
-    def solve() -> Any:
-        return clarabel.DefaultSolver(quadratic, objective, rows, offset, cones, settings).solve()
-
-    solution = solve()
-    if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
-        # It fails at once on a few programs that it has scaled, and solves them unscaled.
-        settings.equilibrate_enable = False
-        solution = solve()
-    begun.end(solution.iterations)
-    x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
-    found = x.shape == (variables,) and np.isfinite(x).all() and np.isfinite(z).all()
-    return Maximum(x, z) if found else None
+def packed_congruence(L: Array, R: Array) -> Array:
+    """Return what the packed entries of Q add to ``L Q R'``, of which the upper half counts."""
+    a, b = triangle(len(L))
+    i, j = triangle(L.shape[1])
+    both = L[a][:, i] * R[b][:, j] + L[a][:, j] * R[b][:, i]
+    scales = np.where(a == b, 1.0, np.sqrt(2.0))[:, None] * np.where(i == j, 0.5, np.sqrt(0.5))
+    return np.asarray(scales * both)

@@ -1,11 +1,11 @@
-"""Search for a value of constant parameters at which the system is not stable."""
+"""Search for a value of constant parameters, or an average of modes, that is not stable."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, islice, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,8 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.mixture import search_mixture
 from nrs_design.search.period import search_period
-from nrs_design.work import Cost
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Shares = tuple[Fraction, ...]
@@ -30,11 +29,8 @@ ENCLOSED = "not tried: what the corners enclose need not be attained"
 # Values of a parameter that are tried, fewer where there are many modes or several parameters.
 GRID, COARSE_GRID, EVALUATIONS = 257, 33, 200_000
 FEWEST = 3
-# Local maxima of the growth that are looked at closely, and how closely.
-PEAKS = 16
-GOLDEN_STEPS = 40
-SWEEPS = 3  # Over several parameters, one after the other
-GOLDEN = (5**0.5 - 1) / 2
+# Local maxima of the growth that are looked at closely, and at how many values for each parameter.
+PEAKS, CLOSELY = 16, 120
 # Shorter shares first: they make shorter numbers in the certificate.
 DENOMINATORS = (1, 4, 16, 64, 256, 2**12, 2**20, 2**32, 2**48)
 # Work for the eigenvalues of a mode at a value, and per multiplication in them.
@@ -45,6 +41,11 @@ SLACK = 1e-9
 # Shares at which switching is looked at: the ends have no mixture rung of their own. Of several
 # parameters, all together or each at its own.
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
+# Of averages of modes: shares of two, how many pairs, and how many others.
+PAIR_SHARES, MAX_PAIRS, RANDOM_MIXTURES = 128, 300, 2000
+# Entries of the averages that are looked at together.
+CHUNK_ENTRIES = 2_000_000
+AVERAGE_DENOMINATORS = (16, 64, 1024, 2**20)
 
 
 def search_value(family: Family) -> Candidates[GrowingSequence]:
@@ -103,8 +104,7 @@ def _count(system: SwitchedSystem) -> int | None:
 
 def _cost(sets: int, values: int, order: int, count: int) -> Cost:
     """Predict what looking at all modes takes, at a grid of values and closely at the peaks."""
-    closely = 2 * PEAKS * GOLDEN_STEPS * (count if count == 1 else count * SWEEPS)
-    return Cost((sets * values + closely) * (PER_MATRIX + PER_PRODUCT * order**3))
+    return Cost((sets * values + PEAKS * CLOSELY * count) * (PER_MATRIX + PER_PRODUCT * order**3))
 
 
 def _at(
@@ -155,22 +155,77 @@ def _peaks(corners: Array, grid: Array, count: int, time: Time) -> list[tuple[in
 
 def _refined(corners: Array, start: Array, step: float, time: Time) -> tuple[Array, float]:
     """Climb to a maximum near shares, no farther than a step; return it with its growth."""
-    best, growth = start, float(_growth(corners, start[None], time)[0])
-    for axis in list(range(len(start))) * (1 if len(start) == 1 else SWEEPS):
-        here = best.copy()
-        a, b = max(0.0, start[axis] - step), min(1.0, start[axis] + step)
-        for _ in range(GOLDEN_STEPS):
-            inner = (b - GOLDEN * (b - a), a + GOLDEN * (b - a))
-            left, right = _growth(corners, _moved(here, axis, *inner), time)
-            a, b = (a, inner[1]) if left > right else (inner[0], b)
-        middle = _moved(here, axis, (a + b) / 2)
-        if (found := float(_growth(corners, middle, time)[0])) > growth:
-            best, growth = middle[0], found
-    return best, growth
+    from scipy.optimize import Bounds, minimize
+
+    def decline(shares: Array) -> float:
+        return -float(_growth(corners, shares[None], time)[0])
+
+    found = minimize(
+        decline,
+        start,
+        method="Nelder-Mead",
+        bounds=Bounds(np.maximum(start - step, 0.0), np.minimum(start + step, 1.0)),
+        options={"maxiter": CLOSELY * len(start), "xatol": 1e-12, "fatol": 1e-15},
+    )
+    return np.asarray(found.x), -float(found.fun)
 
 
-def _moved(shares: Array, axis: int, *to: float) -> Array:
-    """Return the shares with other ones of one parameter, a row for each."""
-    rows = np.repeat(shares[None], len(to), axis=0)
-    rows[:, axis] = to
-    return rows
+def search_mixture(family: Family) -> Candidates[GrowingSequence]:
+    """Scan pairs of modes and random mixtures for a spectral abscissa that is not negative.
+
+    When the work is used up, the search ends with what it has seen.
+    """
+    system, matrices = family.system, family.matrices
+    weights, abscissa = _least_stable(matrices, family.allowance)
+    if abscissa < -SLACK * np.abs(matrices).max():
+        return "every combination tried is stable"
+    for denominator in AVERAGE_DENOMINATORS:
+        shares = _rationalize(weights, denominator)
+        named = tuple(
+            (mode.name, share)
+            for mode, share in zip(system.modes, shares, strict=True)
+            if share > 0
+        )
+        yield Candidate(GrowingSequence(named))
+    return None
+
+
+def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
+    """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
+    m, n = matrices.shape[:2]
+    per_average = PER_MATRIX + PER_PRODUCT * (n**3 + m * n**2)
+    found, largest = np.ones(m) / m, -np.inf
+    for weights in weights_tried(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
+        averages = np.tensordot(weights, matrices, axes=1)
+        abscissas = np.linalg.eigvals(averages).real.max(axis=1)
+        best = int(abscissas.argmax())
+        if abscissas[best] > largest:
+            found, largest = weights[best], float(abscissas[best])
+        if not allowance.goes_on(len(weights) * per_average):
+            break
+    return found, largest
+
+
+def weights_tried(m: int, chunk: int) -> Iterator[Array]:
+    """Yield rows of weights: pairs of modes at evenly spaced shares, then random ones."""
+    if m == 1:
+        yield np.ones((1, 1))
+        return
+    grid = list(product(islice(combinations(range(m), 2), MAX_PAIRS), range(1, PAIR_SHARES)))
+    for start in range(0, len(grid), chunk):
+        part = grid[start : start + chunk]
+        weights, rows = np.zeros((len(part), m)), np.arange(len(part))
+        shares = np.array([share for _, share in part]) / PAIR_SHARES
+        weights[rows, [i for (i, _), _ in part]] = shares
+        weights[rows, [j for (_, j), _ in part]] = 1 - shares
+        yield weights
+    rng = np.random.default_rng(0)
+    for start in range(0, RANDOM_MIXTURES if m > 2 else 0, chunk):
+        yield rng.dirichlet(np.full(m, 0.5), min(chunk, RANDOM_MIXTURES - start))
+
+
+def _rationalize(weights: Array, denominator: int) -> list[Fraction]:
+    """Round weights to a common denominator, keeping their sum at one."""
+    counts = np.floor(weights * denominator + 0.5).astype(int)
+    counts[counts.argmax()] += denominator - counts.sum()
+    return [Fraction(int(count), denominator) for count in counts]

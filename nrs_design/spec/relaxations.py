@@ -63,7 +63,6 @@ class SpecRelaxation:
     # Whether what is proved then is about another loop, or takes more for granted, rather than
     # about less of what was asked for.
     changes_model: bool = False
-    combinable: bool = True  # Whether it is changed where all lines are that make sense together
 
     def edit(self, form: RelaxationSteps, step: int) -> Edit:
         """Return what is written at a step."""
@@ -93,7 +92,7 @@ def _of_matrices(
             yield _with(("parameters", name, "varies"), "false", "true")
     yield from _dwell(spec.switching.is_arbitrary, root, slowest, spec.time == "discrete")
     for index in range(len(spec.modes) if len(spec.modes) > 1 else 0):
-        yield _without(("modes", index), combinable=False)
+        yield _without(("modes", index))
 
 
 def _of_interaction(
@@ -153,10 +152,10 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
     """Yield what may be left out whole."""
     for name, controller in spec.controllers.items():
         for index in range(len(controller.contacts) if len(controller.contacts) > 1 else 0):
-            yield _without(("controllers", name, "contacts", index), combinable=False)
+            yield _without(("controllers", name, "contacts", index))
     if len(spec.controllers) > 1:
         for name in spec.controllers:
-            yield _without(("controllers", name), combinable=False)
+            yield _without(("controllers", name))
     if spec.disturbances is not None:
         yield _without(("disturbances",))
     if spec.idle_states is not None and spec.idle_states.reset:
@@ -175,9 +174,9 @@ def _with(at: Keys, said: Data, asked: str, *, changes_model: bool = False) -> S
     return SpecRelaxation(at, way, changes_model=changes_model)
 
 
-def _without(at: Keys, *, changes_model: bool = False, combinable: bool = True) -> SpecRelaxation:
+def _without(at: Keys, *, changes_model: bool = False) -> SpecRelaxation:
     form = RelaxationSteps(WITHOUT, lambda _: None, lambda _: "", "")
-    return SpecRelaxation(at, form, changes_model=changes_model, combinable=combinable)
+    return SpecRelaxation(at, form, changes_model=changes_model)
 
 
 def _range(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
@@ -272,7 +271,6 @@ def _delay(least: int, most: int) -> Iterator[SpecRelaxation]:
         yield SpecRelaxation(
             at,
             RelaxationSteps(WITH, lambda k: str(most), lambda k: held, _samples(most)),
-            combinable=False,
         )
         form = RelaxationSteps(
             UP, says, lambda k: _samples(least + k), _samples(most), most - least

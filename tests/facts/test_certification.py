@@ -8,7 +8,7 @@ import pytest
 from nrs_design.facts.certification import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.remedies import margin_lines
-from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
+from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE, document_of, run
 

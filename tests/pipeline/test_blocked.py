@@ -201,25 +201,6 @@ def test_a_parameter_of_given_matrices(tmp_path):
 
 
 @pytest.mark.slow
-def test_lines_that_block_together(tmp_path):
-    """Two tissues, each too stiff for the withdrawal: to narrow one of them does not help."""
-    text = soft("20", "62")
-    stiff = text[text.index("    model: elastic") : text.index("\n\n# Thesis 6.3.2.1 asks")]
-    text = text.replace(stiff, f"{stiff}\n  firm:\n{stiff}")
-    text = text.replace("environment: soft\n", "environment: soft\n    contacts: [soft, firm]\n")
-    found = blocked(tmp_path, text, 4)
-    alone, together = found.proved
-    assert texts(found)[0] == "without controllers.withdrawal"
-    assert [line.line for line in together.lines] == [
-        "environments.firm.stiffness.range",
-        "environments.soft.stiffness.range",
-    ]
-    assert len(alone.lines) == 1
-    head, *_ = blocked_lines(found, Path("a"))
-    assert head.startswith("proved with any one of these changes")
-
-
-@pytest.mark.slow
 def test_nothing_helps_against_a_spring_that_is_too_stiff(tmp_path):
     text = (ROOT / "docs/examples/pulling.nrs.yaml").read_text(encoding="utf-8")
     text = text.replace("58 N*m/rad", "900 N*m/rad").replace("delay: 2", "delay: 0")

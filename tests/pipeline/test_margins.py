@@ -102,8 +102,8 @@ def test_a_delay_that_makes_no_loop_ends_the_search_and_says_why(tmp_path, monke
     monkeypatch.setattr(margins, "assemble_spec", refuse)
     loop = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False).loop
     assert (loop.delay.proved, loop.delay.refuted) == (1, None)
-    assert "a longer one makes no loop (the loop is too large)" in loop.delay.end
-    assert "a longer one makes no loop (the loop is too large)" in loop.period.end
+    assert "what is beyond makes no system (the loop is too large)" in loop.delay.end
+    assert "what is beyond makes no system (the loop is too large)" in loop.period.end
 
 
 MISSES = """\

@@ -20,7 +20,7 @@ from nrs_design.proof.switching import Clock, Switching
 from nrs_design.search.cases import joined
 from nrs_design.search.certification import Attempt
 from nrs_design.search.certify import certify_cases, prove_together
-from nrs_design.search.rate_limit import rate_limit
+from nrs_design.search.family import rate_limit
 from nrs_design.work import Allowance
 from tests.proof.systems import (
     bouncing,

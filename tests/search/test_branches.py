@@ -7,8 +7,7 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.search.branches import best_words
-from nrs_design.search.step_graph import StepGraph
+from nrs_design.search.branches import StepGraph, best_words
 from nrs_design.work import Allowance
 from tests.proof.systems import family, golden, lossy_network
 

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.search import common_quadratic
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
-from nrs_design.search.common_quadratic import decide_one_state, search_by_gradient, search_by_lmi
+from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.graphs import search_polynomial, search_preconditioned, search_raw
-from nrs_design.search.mixture import search_mixture
+from nrs_design.search.forms import FormsProgram
+from nrs_design.search.gradient import search_by_gradient
+from nrs_design.search.graphs import decide_one_state, search_by_lmi, search_polynomial
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from nrs_design.search.unstable_value import search_mixture
 from nrs_design.work import Allowance, NotAffordableError
 from tests.search.support import outcome
 from tests.support import dayawansa_martin, family, holds
@@ -53,14 +54,13 @@ def test_modes_that_must_be_left_are_not_called_stable():
     assert words.startswith("1 modes tested exactly, all stable; 1 not tested")
 
 
-@pytest.mark.parametrize("search", [search_raw, search_preconditioned])
-def test_other_coordinates_find_evidence_too(search):
+def test_states_of_any_size_are_balanced():
     stretched = family(*([[-1, x], [y, -1]] for x, y in ((1000, 0), (500, "1/9999"))))
     for system in (GOOD, stretched):
-        evidence, words = outcome(search, system)
+        evidence, words = outcome(search_by_lmi, system)
         assert words == "found with the largest decay rate"
         assert holds(system, evidence)
-    evidence, words = outcome(search, dayawansa_martin(6))
+    evidence, words = outcome(search_by_lmi, dayawansa_martin(6))
     assert (evidence, words) == (None, NO_MARGIN)
 
 
@@ -85,10 +85,9 @@ def test_polynomials_beyond_patience_are_not_tried():
 
 def test_candidates_that_no_rounding_saves(monkeypatch):
     """What is proposed without looking at the modes is refused, and the exact check says why."""
-    monkeypatch.setattr(
-        common_quadratic, "find_common_quadratic", lambda *_, **__: np.diag([1.0, 100.0])
-    )
-    monkeypatch.setattr(common_quadratic, "rate_of", lambda *_: 0.5)
+    lie = Solution([np.diag([1.0, 100.0])], np.zeros(0), [np.zeros((1, 1))] * 2)
+    monkeypatch.setattr(FormsProgram, "solve", lambda *_: lie)
+    monkeypatch.setattr(FormsProgram, "own_rate", lambda *_: 0.5)
     evidence, words = outcome(search_by_lmi, GOOD)
     assert evidence is None
     assert words.startswith("a candidate was found, but V does not decrease")
@@ -102,7 +101,7 @@ def test_one_state_is_decided_without_floating_point():
 
 def test_beyond_floating_point():
     beyond = family([[-(10**400), 0], [0, -1]])
-    for search in (search_by_lmi, search_by_gradient, search_raw, search_preconditioned):
+    for search in (search_by_lmi, search_by_gradient):
         assert outcome(search, beyond) == (None, OUT_OF_RANGE)
     assert outcome(examine_suspicious_modes, beyond)[0] is None
 

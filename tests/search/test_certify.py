@@ -17,15 +17,16 @@ from nrs_design.errors import ClockError, DesignError, InternalError
 from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search import acceptance, gradient, ladder, lmi, unstable_mode
-from nrs_design.search import common_quadratic as searches
+from nrs_design.search import gradient, ladder, unstable_mode
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
+from nrs_design.search.drawing import Solution
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
-from nrs_design.search.sdp import Maximum
+from nrs_design.search.sdp import Maximum, SemidefiniteProgram
 from tests.proof.graphs import common_quadratic, shape_of
 from tests.support import dayawansa_martin, family, holds
 
@@ -411,7 +412,7 @@ class TestMethods:
 
     def test_a_search_that_the_clock_stops_decides_nothing(self, monkeypatch):
         """Not even where a proof was at hand already, at a rate that more time would raise."""
-        jump = iter([*[0.0] * 100, *[1e9] * 10**6])
+        jump = iter([*[0.0] * 30, *[1e9] * 10**6])
         monkeypatch.setattr("nrs_design.work.monotonic", lambda: next(jump))
         with pytest.raises(ClockError, match="the clock stopped this after 660 s"):
             certify(STABLE)
@@ -488,6 +489,18 @@ SYSTEMS = {
 }
 
 
+def solving(lie):
+    """Return what a program solves if every form of it is a lie."""
+
+    def solve(program, *_):
+        forms = [lie(n) for n in program.sizes]
+        return Solution(
+            forms, np.zeros(len(program.scales)), [np.zeros((1, 1))] * len(program.edges)
+        )
+
+    return solve
+
+
 # What no lie may prove, in both kinds of time.
 TWO = ("marginal", "unstable discrete")
 ASKED = (Limits(max_degree=4), replace(ANY_RATE, max_degree=4))
@@ -524,11 +537,7 @@ class TestLyingSolvers:
 
     def test_the_search(self, monkeypatch, name):
         def tell(lie):
-            monkeypatch.setattr(
-                searches,
-                "find_common_quadratic",
-                lambda matrices, *rest, **options: lie(matrices.shape[1]),
-            )
+            monkeypatch.setattr(FormsProgram, "solve", solving(lie))
 
         assert not wrong_lies(name, tell)
 
@@ -540,19 +549,18 @@ class TestLyingSolvers:
                 lambda matrices, *_: GradientResult(lie(matrices.shape[1]), 1),
             )
 
-        monkeypatch.setattr(searches, "find_common_quadratic", lambda *arguments, **options: None)
+        monkeypatch.setattr(FormsProgram, "solve", lambda *_: None)
         assert not wrong_lies(name, tell)
 
     def test_every_semidefinite_program(self, monkeypatch, name):
         """The same lie wherever the solver is called, and only there."""
 
         def tell(lie):
-            def answer(rows, offset, sizes, begun):
-                x = np.resize(lie(2).ravel(), rows.shape[1])
-                return Maximum(x, np.zeros(len(offset))) if np.isfinite(x).all() else None
+            def answer(program, allowance):
+                x = np.resize(lie(2).ravel(), program.unknowns)
+                return Maximum(x, []) if np.isfinite(x).all() else None
 
-            for module in ("forms", "sdp"):
-                monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
+            monkeypatch.setattr(SemidefiniteProgram, "maximize", answer)
 
         # Rates are claimed for what is found, and here is nothing.
         assert not wrong_lies(name, tell, asked=ASKED[1:], may_give_up=True)
@@ -562,16 +570,17 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
     """A Q for a = 5.82 is not one for a = 5.9, however near."""
     below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
     Q = np.array(below.nodes[0].form, dtype=float)
-    monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: Q)
-    assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
+    with monkeypatch.context() as lying:
+        lying.setattr(FormsProgram, "solve", solving(lambda n: Q))
+        assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
     assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
 
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(acceptance, "find_fault", lambda evidence, system, charge: None)
-    monkeypatch.setattr(searches, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
-    monkeypatch.setattr(searches, "rate_of", lambda *arguments: 0.5)
+    monkeypatch.setattr(FormsOnGraph, "find_fault", lambda *_: None)
+    monkeypatch.setattr(FormsProgram, "solve", solving(np.eye))
+    monkeypatch.setattr(FormsProgram, "own_rate", lambda *_: 0.5)
     with pytest.raises(InternalError):
         certify(NOT_QUADRATIC, limits=ANY_RATE)
 

@@ -10,8 +10,7 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Limits, Verdict, certify
-from nrs_design.search.cycle import elementary_cycles
-from nrs_design.search.graph import Jump
+from nrs_design.search.graph import Jump, elementary_cycles
 from tests.proof.systems import family, must_leave, must_leave_in_time, resets_between, two_ways
 from tests.proof.truth import holds
 

@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.extremal_words import least_growth, search_extremal_words, words_in_norms
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.memory import draw_memory
+from nrs_design.search.memory import (
+    draw_memory,
+    least_growth,
+    search_extremal_words,
+    words_in_norms,
+)
 from nrs_design.work import Allowance
 from tests.literature.test_growth_per_step import divided
 from tests.proof.systems import golden, lossy_network

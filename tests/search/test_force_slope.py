@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.proof.channels import Output
-from nrs_design.search.force_slope import force_slope
+from nrs_design.search.rate_slope import force_slope
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import dayawansa_martin, family, matrix, pushed
 from tests.search.test_invariant_ellipsoid import bounded

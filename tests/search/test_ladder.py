@@ -51,8 +51,6 @@ def test_the_order_is_cheapest_first_and_higher_degrees_come_last():
         "suspicious modes",
         "lmi",
         "obstruction",
-        "lmi, raw",
-        "lmi, preconditioned",
         "gradient",
         "every mode",
         "mixture",

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.search import mixture
+from nrs_design.search import unstable_value as mixture
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.family import Family
-from nrs_design.search.mixture import search_mixture
+from nrs_design.search.unstable_value import search_mixture
 from nrs_design.work import Allowance
 from tests.proof.systems import branicky, dayawansa_martin, family, shears
 from tests.proof.truth import holds
@@ -68,7 +68,7 @@ def test_many_modes_are_looked_at_a_few_at_a_time(monkeypatch):
         sizes.append(len(weights))
         assert weights.sum(axis=1) == pytest.approx(1.0)
     assert max(sizes) == 1000
-    assert sum(sizes) == mixture.MAX_PAIRS * (mixture.SHARES - 1) + mixture.RANDOM_MIXTURES
+    assert sum(sizes) == mixture.MAX_PAIRS * (mixture.PAIR_SHARES - 1) + mixture.RANDOM_MIXTURES
 
 
 def test_without_time_the_first_look_counts():
@@ -81,5 +81,5 @@ def test_ever_finer_shares_are_proposed():
     proposed = list(search_mixture(Family.of(shears())))
     assert all(isinstance(candidate, Candidate) for candidate in proposed)
     shares = [dict(candidate.evidence.steps)["m0"] for candidate in proposed]
-    pairs = zip(shares, mixture.DENOMINATORS, strict=True)
+    pairs = zip(shares, mixture.AVERAGE_DENOMINATORS, strict=True)
     assert all(share.denominator <= denominator for share, denominator in pairs)

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.search.certify import certify
-from nrs_design.search.pieces import PIECES, enough_pieces
+from nrs_design.search.stays import PIECES, enough_pieces
 from tests.proof.systems import family
 
 A = [["0.13", "1.22"], ["-1.13", "-0.56"]]

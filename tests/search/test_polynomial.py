@@ -11,8 +11,13 @@ from nrs_design.proof.evidence.graph import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.proof.lift import monomials, vanishes
 from nrs_design.search.family import Family
 from nrs_design.search.graphs import search_polynomial
-from nrs_design.search.lifted import make_vanish, products, vanishing_basis
-from nrs_design.search.polynomial import family_cost, highest_degree
+from nrs_design.search.polynomial import (
+    family_cost,
+    highest_degree,
+    make_vanish,
+    products,
+    vanishing_basis,
+)
 from tests.proof.systems import ando_shih, dayawansa_martin
 from tests.search.support import found
 

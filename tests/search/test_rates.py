@@ -2,16 +2,14 @@
 
 from dataclasses import dataclass, field, replace
 
-import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.family import Family
-from nrs_design.search.lmi import find_common_quadratic
+from nrs_design.search.forms import FormsProgram
+from nrs_design.search.graphs import draw_balanced
 from nrs_design.search.rates import (
-    NEAR_OF_DEAR,
-    OF_DEAR,
     RESOLUTION,
     SMALLEST,
     Rates,
@@ -20,9 +18,10 @@ from nrs_design.search.rates import (
 )
 from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
 from nrs_design.work import Allowance, Cost, NotAffordableError
+from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
 
-PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
+PAIR = Family.of(dayawansa_martin(5))
 # How exactly a position is found where it is not told otherwise.
 FINE = 2.0**-14
 
@@ -32,12 +31,13 @@ def shown_up_to(threshold, further=0.0):
     return lambda s: None if s > threshold else s + further * (threshold - s)
 
 
-def largest_position(matrices, limit, allowance=None):
-    """The largest position at which there is a common quadratic function."""
+def largest_position(allowance=None):
+    """The largest position at which the pair has a common quadratic function."""
+    program = FormsProgram(draw_balanced(PAIR))
 
     def shown(position):
-        rate = rate_at(position, limit, Time.CONTINUOUS)
-        found = find_common_quadratic(matrices, Time.CONTINUOUS, rate, allowance=allowance)
+        rate = rate_at(position, 1.0, Time.CONTINUOUS)
+        found = program.solve(rate, allowance or Allowance())
         return None if found is None else position
 
     return bisect_position(shown, 0.0, FINE)
@@ -51,7 +51,7 @@ def test_positions_run_from_stability_to_the_limit():
 
 def test_position_of_dayawansa_martin():
     """The pair shifted by alpha is a scaled pair; the threshold falls where it must."""
-    position = largest_position(PAIR, 1.0)
+    position = largest_position()
     assert position == pytest.approx(0.1056, abs=2e-4)
 
 
@@ -89,7 +89,6 @@ class Known:
     best: float
     further: float = 0.0
     is_flow: bool = True
-    is_dear: bool = False
     work: float = 0.0
     asked: list = field(default_factory=list)
 
@@ -137,10 +136,6 @@ def test_what_a_solution_shows_is_claimed_without_another():
     asked = len(program.asked)
     assert solution >= claim > max(rate for rate in program.asked if rate <= 1.6) - 1e-3
     assert asked < 15
-    dear = Known(1.6, 0.5, is_dear=True)
-    claims = [float(c.evidence[1]) for c in proposed(dear)]
-    assert 1.6 * NEAR_OF_DEAR * (1 - 2 * OF_DEAR) < claims[0] < 1.6
-    assert len(dear.asked) < 13
 
 
 def test_errors_are_covered_first_and_any_rate_last():
@@ -171,11 +166,11 @@ def test_the_search_for_the_best_rate_takes_half_of_the_work(always):
 
 
 def test_a_bisection_without_work_keeps_what_it_has():
-    assert largest_position(PAIR, 1.0, Allowance(0.0)) == 0.0
+    assert largest_position(Allowance(0.0)) == 0.0
     # Enough for some of the steps of the bisection only.
-    allowance = Allowance(0.04)
-    some = largest_position(PAIR, 1.0, allowance)
-    assert 0.0 < some < largest_position(PAIR, 1.0)
+    allowance = Allowance(0.01)
+    some = largest_position(allowance)
+    assert 0.0 < some < largest_position()
 
     tried = []
 

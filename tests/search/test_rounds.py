@@ -5,7 +5,7 @@ from dataclasses import replace
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.search.certify import certify
-from nrs_design.search.rounds import search_rounds
+from nrs_design.search.period import search_rounds
 from tests.proof.systems import bouncing_in_steps, doubled_in_turns, family
 from tests.search.support import found, outcome
 

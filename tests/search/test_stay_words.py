@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.search.graph import Graph
-from nrs_design.search.stay_words import stay_words
+from nrs_design.search.period import stay_words
 from nrs_design.work import Allowance
 from tests.literature.timed_loop import timed
 
@@ -23,7 +23,7 @@ def test_delays_in_turn():
     cycle, times = found[-1]
     assert graph.growth(cycle, times) > 0
     # It begins with the first mode, and takes both ends of the delay.
-    assert [graph.flows.matrices.shape[0], *graph.modes(cycle)[:2]] == [2, 0, 1]
+    assert [graph.matrices.shape[0], *graph.modes(cycle)[:2]] == [2, 0, 1]
     assert times[::2].min() == pytest.approx(0.6e-9)
     assert times[::2].max() == pytest.approx(0.6e-3)
     assert (graph.admissible(cycle, times) == times).all()

@@ -9,7 +9,7 @@ import pytest
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.search.step_graph import StepGraph
+from nrs_design.search.branches import StepGraph
 from tests.proof.systems import family, golden, resets_between
 
 MODES = [["1/2"]], [["1/3"]], [["1/5"]]

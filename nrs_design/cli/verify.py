@@ -105,17 +105,12 @@ def verify(
 
 
 def _verify(certificate: Path, spec: Path | None) -> tuple[Verification, LoadedSpec | None]:
-    from nrs_design.certificates.prove import prove, read_document
-
-    document = read_document(certificate)
-    if spec is None:
-        return prove(document), None
-    from nrs_design.certificates.beside import proof_beside
+    from nrs_design.certificates.prove import read_document
     from nrs_design.certificates.verify import verify_document
 
-    with proof_beside(document) as proof:
-        loaded = take_spec(spec)
-        return verify_document(document, loaded, proof=proof), loaded
+    document = read_document(certificate)
+    loaded = None if spec is None else take_spec(spec)
+    return verify_document(document, loaded), loaded
 
 
 _NEXT = {

@@ -12,7 +12,6 @@ from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
-    assume,
     assume_constants,
     assume_data,
     assume_logic,
@@ -21,12 +20,10 @@ from nrs_design.loop.assumptions import (
     assume_preloads,
     assume_scale,
 )
-from nrs_design.loop.cases import in_cases
 from nrs_design.loop.constant_parameters import (
     constant_lateness,
     constants_of,
     with_constants,
-    within,
 )
 from nrs_design.loop.constraints import assemble_switching
 from nrs_design.loop.located import grouped
@@ -35,7 +32,6 @@ from nrs_design.loop.parameters import (
     corner_modes,
     read_parameters,
 )
-from nrs_design.models.cut import Ends, RangeCut, cut_ranges
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -62,7 +58,6 @@ def assemble_from_text(
     scale: Fraction = DECLARED,
     plant: Plant | None = None,
     points: str = "",
-    cuts: Sequence[RangeCut] = (),
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
@@ -74,8 +69,8 @@ def assemble_from_text(
     if spec.kind == "switched-system":
         if gains:
             raise AssemblyError("given matrices have no gains")
-        if points or cuts:
-            raise AssemblyError("the ranges of given matrices are not cut, and have no points")
+        if points:
+            raise AssemblyError("the ranges of given matrices have no points")
         return assemble_matrices(spec, scale)
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
@@ -84,7 +79,7 @@ def assemble_from_text(
 
     design = design_from_gains(spec, gains)
     plant = plant or build_plant(spec)
-    return assemble(spec, plant, design, scale, points=points, cuts=cuts)
+    return assemble(spec, plant, design, scale, points=points)
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -121,21 +116,18 @@ def assemble(
     scale: Fraction = DECLARED,
     *,
     points: str = "",
-    cuts: Sequence[RangeCut] = (),
-    parts: Sequence[SwitchedSystem] = (),
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Every declared range is stretched by the scale, not negative, about its nominal value. Those of
-    constants are cut in parts, each a case, as `closed_part` returns it if `parts` does not hold
-    it. An `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of
-    switching make too many switches.
+    Every declared range is stretched by the scale, not negative, about its nominal value. An
+    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
+    make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
     _check_scale(scale)
     conditions = build_conditions(spec)
-    if points and (points not in POINTS or conditions.sampling is None or cuts):
+    if points and (points not in POINTS or conditions.sampling is None):
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
     plant = plant.scaled(scale, conditions.contacted)
@@ -155,13 +147,6 @@ def assemble(
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system, corners = _closed(conditions, plant, design, constants, points)
     system = with_constants(system, constants, corners)
-    constant = tuple(assume_constants(system.switching))
-    if cuts:
-        whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
-        each = cut_ranges(whole, cuts)
-        parts = parts or [closed_part(conditions, plant, design, drive, part) for part in each]
-        system = in_cases(system, parts)
-        constant = (*constant, assume("constant.cases", cases=len(system.cases)))
     period = None if conditions.sampling is None else conditions.sampling.outer
     touched = plant.among(design.contacts)
     disturbed = bool(system.channels) and period is not None
@@ -173,33 +158,17 @@ def assemble(
         *assume_preloads(conditions.preloads, scale),
         *assume_scale(scale),
         *assume_points(points, remembers=any(e.law.remembers for e in touched)),
-        *constant,
+        *assume_constants(system.switching),
     )
     return _on_axis(replace(system, assumptions=assumptions), spec.axis)
-
-
-def closed_part(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-    drive: str,
-    part: Ends,
-) -> SwitchedSystem:
-    """Return the closed loop with constants in a part of their ranges, where they may change.
-
-    `drive` is the part of the spec that the motor is.
-    """
-    late = part.get(conditions.constant_delay_key or "", conditions.command_delay)
-    system, _ = _closed(replace(conditions, command_delay=late), within(plant, drive, part), design)
-    return system
 
 
 def _closed(
     conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
-    constants: Sequence[ConstantParameter] = (),
-    points: str = "",
+    constants: Sequence[ConstantParameter],
+    points: str,
 ) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
     """Return the closed loop with all ranges varying, and the corner of each mode."""
     if conditions.sampling is None:

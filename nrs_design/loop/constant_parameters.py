@@ -10,7 +10,6 @@ from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.models.cut import Ends
 from nrs_design.models.drive import GAIN
 from nrs_design.models.interval import Interval
 from nrs_design.proof.switching import FixedParameter
@@ -97,37 +96,6 @@ def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParam
                 name, inverse = f"environments.{environment.name}.{key}", symbol in law.inverse
                 found = _between_ends(name, interval, symbol, unit, inverse=inverse)
                 yield replace(found, contact=environment.name)
-
-
-def within(plant: Plant, drive: str, part: Ends) -> Plant:
-    """Return a plant with constant parameters in a part of their ranges, by name."""
-    ranges = plant.actuator_ranges
-    return replace(
-        plant,
-        environments=tuple(
-            replace(
-                e,
-                ranges=tuple(
-                    interval.within(part.get(f"environments.{e.name}.{key}"))
-                    for key, interval in zip(e.law.keys, e.ranges, strict=True)
-                ),
-            )
-            for e in plant.environments
-        ),
-        actuator_ranges=replace(
-            ranges,
-            gain=ranges.gain.within(part.get(f"{drive}.gain")),
-            time_constant=ranges.time_constant.within(part.get(f"{drive}.time_constant")),
-        ),
-        drive=plant.drive
-        and replace(
-            plant.drive,
-            ranges={
-                symbol: interval.within(part.get(f"{drive}.{_DRIVEN[symbol][0]}"))
-                for symbol, interval in plant.drive.ranges.items()
-            },
-        ),
-    )
 
 
 def _between_ends(

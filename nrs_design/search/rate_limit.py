@@ -25,13 +25,8 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     Modes that must be left are left out of account; None if all are, or if modes take turns.
     Continuous time: the slowest mode's ``-max Re``, in 1/s. Discrete time: the largest
     ``radius(A_k ... A_1)^(1/k)`` over short products of modes, a lower bound of the joint spectral
-    radius; where switching is constrained, of single modes only. That of the slowest case.
+    radius; where switching is constrained, of single modes only.
     """
-    if system.cases:
-        every = [rate_limit(system.only(frozenset(names))) for names in system.cases]
-        known = [limit for limit in every if limit is not None]
-        slowest = min if system.time is Time.CONTINUOUS else max
-        return slowest(known) if len(known) == len(every) else None
     modes = system.lasting_modes()
     if not modes:
         return None

@@ -26,19 +26,19 @@ from nrs_design.loop.constant_parameters import (
     with_constants,
 )
 from nrs_design.loop.constraints import assemble_switching
-from nrs_design.loop.located import grouped
-from nrs_design.loop.parameters import (
+from nrs_design.loop.given_matrices import (
     constant_parameters,
     corner_modes,
+    modes_with_misses,
     read_parameters,
 )
+from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter, grouped
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.loop.constant_parameters import ConstantParameter, Corner
     from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
@@ -92,8 +92,6 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     items = tuple(chain.from_iterable(corner_modes(mode, parameters) for mode in spec.modes))
     if spec.misses is not None:
-        from nrs_design.loop.misses import modes_with_misses
-
         items, switching = modes_with_misses(items, spec.misses)
     else:
         switching = assemble_switching(spec.switching, grouped(items), resets)
@@ -105,8 +103,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         assumptions=assume_matrices(spec, parameters, scale),
         switching=switching,
     )
-    constants = constant_parameters(parameters)
-    return with_constants(system, constants, tuple(item.corner for item in items))
+    return with_constants(system, constant_parameters(parameters), items)
 
 
 def assemble(
@@ -145,8 +142,8 @@ def assemble(
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
-    system, corners = _closed(conditions, plant, design, constants, points)
-    system = with_constants(system, constants, corners)
+    system, modes = _closed(conditions, plant, design, constants, points)
+    system = with_constants(system, constants, modes)
     period = None if conditions.sampling is None else conditions.sampling.outer
     touched = plant.among(design.contacts)
     disturbed = bool(system.channels) and period is not None
@@ -169,8 +166,8 @@ def _closed(
     design: ControllerDesign,
     constants: Sequence[ConstantParameter],
     points: str,
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Return the closed loop with all ranges varying, and the corner of each mode."""
+) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
+    """Return the closed loop with all ranges varying, and its modes."""
     if conditions.sampling is None:
         state = state_of(conditions, plant, design)
         return _assemble_continuous(conditions, plant, state, constants)
@@ -195,11 +192,11 @@ def _assemble_continuous(
     plant: Plant,
     state: SharedState,
     constants: Sequence[ConstantParameter],
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
+) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
     from nrs_design.loop.close_loop import close_loop
 
     limited = conditions.initial_force is not None
-    system, corners = close_loop(
+    system, modes = close_loop(
         conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
     )
     if conditions.disturbances is not None:
@@ -211,7 +208,7 @@ def _assemble_continuous(
         from nrs_design.loop.saturation import with_saturation
 
         system = with_saturation(system, conditions, plant.actuator, state)
-    return system, corners
+    return system, modes
 
 
 def state_of(

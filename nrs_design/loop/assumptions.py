@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import starmap
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
-from nrs_design.loop.parameters import UncertainParameter
+from nrs_design.models.interval import Interval
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import exact_text
@@ -34,22 +35,21 @@ _STAYS = {
 
 
 def assume_matrices(
-    spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
+    spec: SwitchedSystemSpec, parameters: Mapping[str, Interval], scale: Fraction
 ) -> tuple[Assumption, ...]:
     """Return the assumptions of a `switched-system` spec; the parameters are scaled already."""
     return (
         GIVEN_MATRICES[0],
-        *map(_assume_parameter, parameters),
+        *starmap(_assume_parameter, parameters.items()),
         *assume_scale(scale),
         *_assume_switches(spec),
     )
 
 
-def _assume_parameter(parameter: UncertainParameter) -> Assumption:
-    interval, name = parameter.interval, parameter.name
+def _assume_parameter(name: str, interval: Interval) -> Assumption:
     if interval.low == interval.high:
         return assume("range.value", name=name, value=exact_text(interval.low))
-    how = "range.varies" if parameter.varies else "range.constant"
+    how = "range.varies" if interval.varies else "range.constant"
     return assume(how, name=name, ends=interval.text)
 
 

@@ -14,7 +14,6 @@ from functools import partial
 from itertools import permutations, product
 
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.loop.constant_parameters import ConstantParameter, Corner
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
@@ -24,9 +23,15 @@ from nrs_design.loop.free_motion import (
     lost_contact,
     pulls_of,
 )
-from nrs_design.loop.located import MatrixMode, enclosures_of, grouped
+from nrs_design.loop.located import (
+    ConstantParameter,
+    MatrixMode,
+    Spot,
+    enclosures_of,
+    grouped,
+    spot_of,
+)
 from nrs_design.loop.shared_state import SharedState
-from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
@@ -42,8 +47,8 @@ def close_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     limited: bool = False,
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Assemble every mode of an interaction design; say at which ends of constants each is.
+) -> tuple[SwitchedSystem, Sequence[MatrixMode]]:
+    """Assemble every mode of an interaction design.
 
     Without rules any controller may follow any other at any time. Contact, losable or kept, may by
     default be lost where that is modelled, and a statement says whether it covers it. `limited`:
@@ -75,7 +80,7 @@ def close_loop(
         flights=flights_of(items, state.environments, pulls) if free else None,
         enclosures=tuple(enclosures_of(items)),
     )
-    return system, tuple(item.corner for item in items)
+    return system, items
 
 
 def _resets(

@@ -306,8 +306,7 @@ def _loop(
 ) -> tuple[SampledLoop, Rows]:
     """Return the loop of a law, and the flow of a period at one point."""
     # Not loaded for a design in continuous time.
-    from nrs_design.loop.calendar import Calendar
-    from nrs_design.loop.command_timing import CommandTiming
+    from nrs_design.loop.calendar import Calendar, CommandTiming
     from nrs_design.loop.flow import HeldDrive
     from nrs_design.loop.program import SampledProgram
     from nrs_design.loop.sampled import SampledLoop

@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import product, starmap
 
 from nrs_design.errors import InternalError
-from nrs_design.loop.spot import labelled_ends
+from nrs_design.loop.located import labelled_ends
 from nrs_design.models.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]

@@ -20,8 +20,8 @@ from nrs_design.loop.assumptions import (
     assume_rules,
     assume_tissue,
 )
-from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.loss import Loss
+from nrs_design.loop.calendar import CommandTiming
+from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.models.contact.environment import Environment

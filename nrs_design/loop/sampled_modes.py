@@ -9,11 +9,15 @@ from itertools import product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
-from nrs_design.loop.constant_parameters import ConstantParameter
 from nrs_design.loop.flow import AGAIN, HeldDrive
-from nrs_design.loop.located import AbstractLocatedMode
+from nrs_design.loop.located import (
+    AbstractLocatedMode,
+    ConstantParameter,
+    Spot,
+    labelled_ends,
+    spot_of,
+)
 from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
-from nrs_design.loop.spot import Spot, labelled_ends, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval

@@ -12,21 +12,24 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.calendar import Calendar, Turn, turns_of
-from nrs_design.loop.command_timing import timing_of
-from nrs_design.loop.constant_parameters import ConstantParameter, Corner
-from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
+from nrs_design.loop.calendar import Calendar, CommandTiming, Turn, turns_of
+from nrs_design.loop.constraints import (
+    assemble_switching,
+    clock_of,
+    count_stays,
+    leaving_impedance,
+    zeroing,
+)
 from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.free_motion import (
+    Loss,
     could_pull,
     flights_of,
     force_rows,
     lost_on_surface,
     outputs_of,
 )
-from nrs_design.loop.located import enclosures_of, grouped
-from nrs_design.loop.loss import Loss
-from nrs_design.loop.misses import clock_of
+from nrs_design.loop.located import ConstantParameter, enclosures_of, grouped
 from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import (
     FORCE_ERROR,
@@ -39,7 +42,6 @@ from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
-from nrs_design.loop.stays import count_stays
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
@@ -63,8 +65,8 @@ def close_sampled_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     points: bool = False,
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Return the system of a sampled loop, and at which ends of constant numbers its modes are.
+) -> tuple[SwitchedSystem, Sequence[SampledMode]]:
+    """Return the system of a sampled loop, and its modes.
 
     `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
     """
@@ -104,7 +106,7 @@ def close_sampled_loop(
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
-    rules = count_stays(conditions.switching, grouped(items), period)
+    clock, rest, counted = count_stays(conditions.switching, grouped(items), period)
     driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
     system = SwitchedSystem(
         name=conditions.name,
@@ -114,11 +116,9 @@ def close_sampled_loop(
         assumptions=(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *(() if driven is None else (driven.assumption,)),
-            *rules.assumptions,
+            *counted,
         ),
-        switching=assemble_switching(
-            rules.rest, grouped(modes), _resets(conditions.idle, loop, design)
-        ),
+        switching=assemble_switching(rest, grouped(modes), _resets(conditions.idle, loop, design)),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
         else None,
@@ -126,13 +126,13 @@ def close_sampled_loop(
         channels=channels,
         outputs=(*outputs, *(() if driven is None else (driven.output,))),
         roundings=tuple(_roundings(loop, channels, items)),
-        clock=_clock(sampling, items) or rules.clock,
+        clock=_clock(sampling, items) or clock,
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
-    return system, tuple(item.corner for item in modes)
+    return system, modes
 
 
 def _wired(
@@ -143,7 +143,8 @@ def _wired(
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
     """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
-    calendar = Calendar(timing_of(sampling, conditions.command_delay), turns=turns_of(sampling))
+    timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
+    calendar = Calendar(timing, turns=turns_of(sampling))
     program = _program(conditions.idle, sampling, design, laws)
     loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
     if not loop.takes_force:

@@ -12,9 +12,10 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.loop.misses import modes_with_misses
+from nrs_design.loop.given_matrices import modes_with_misses
+from nrs_design.loop.located import MatrixMode, Spot
 from nrs_design.pipeline.radius import bound_radius
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -77,11 +78,13 @@ class Misses:
 
     def system(self, modes):
         first = family(*modes[:2], time=Time.DISCRETE)
-        groups = {"hit": (first.modes[0],), "miss": (first.modes[1],)}
-        groups = {name: (Mode(name, of[0].A),) for name, of in groups.items()}
+        items = [
+            MatrixMode(name, Spot.named(name), "", mode.A)
+            for name, mode in zip(("hit", "miss"), first.modes, strict=True)
+        ]
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)
-        each, rules = modes_with_misses(groups, rule)
-        return replace(first, modes=each, switching=rules)
+        each, rules = modes_with_misses(items, rule)
+        return replace(first, modes=tuple(item.mode for item in each), switching=rules)
 
     def lets_repeat(self, word):
         long = word * (self.of + 1)

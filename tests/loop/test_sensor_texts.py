@@ -26,11 +26,6 @@ def test_errors_are_summed_rounded_up_and_left_out():
     assert "it has no bound" in noise
 
 
-def test_the_inertia_of_a_tool_is_left_out():
-    (text,) = sentences(Sensor(carries=True).assumptions(None, disturbed=False))
-    assert "not by its acceleration" in text
-
-
 def test_bounds_on_disturbances_take_them_up():
     step, errors, _ = sentences(SENSOR.assumptions(Fraction(1, 500), disturbed=True))
     assert "x+ = p x + q F with the single-precision numbers p = 0.67" in step

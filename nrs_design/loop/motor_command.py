@@ -8,7 +8,6 @@ rest under the same disturbances: saturation is then not left out of the bounds,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
@@ -23,49 +22,28 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec.motion import MOTOR_COMMAND
 
 
-@dataclass(frozen=True, slots=True)
-class MotorCommand:
-    """The command as an output, and what it leaves out."""
-
-    output: Output  # Command as a function of the states, roundings included
-    # Largest direct effect of the disturbances of a sample on its command.
-    at_once: Fraction
-    limit: Fraction  # Limit of the driver, a single-precision number
-
-    @property
-    def assumption(self) -> Assumption:
-        """Assumption about saturation for statements that bound the command."""
-        unit = self.output.unit
-        return Assumption.create(
-            "not-quantized.command",
-            limit=rounded_down(self.limit, unit),
-            less=self.at_once > 0 and "errors",
-            at_once=self.at_once > 0 and rounded_up(self.at_once, unit),
-            output=self.output.name,
-        )
-
-
 def motor_command(
     largest: Fraction | None,
     unit: str,
     loop: SampledLoop,
     channels: Sequence[Channel],
-) -> MotorCommand | None:
-    """Return the command under disturbances, or None.
+) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
+    """Return the command under disturbances, roundings included, and what it leaves out.
 
     Impedance controllers change the reference after the command, so it is one and the same form of
     the states in all modes, in contact and free. A rounding is at most a share of other forms, so
-    the command is a mixture of rows in which every share is added or subtracted. None without
+    the command is a mixture of rows in which every share is added or subtracted. Nothing without
     disturbances or a limit, or where it is not of this form.
     """
     moving = all(law.law.commands == "velocity" for law in loop.program.laws)
     if largest is None or not channels or not moving or loop.calendar.holds:
-        return None
+        return (), ()
     sample = loop.sample(loop.program.laws[0], loop.calendar.ages[0], NOTHING)
     form, n = sample.command, len(loop.states)
     end = n + len(INPUTS)
     bounds = {channel.name: channel.bound for channel in channels}
     shares = list(zip(form[end:], sample.sizes, strict=True))
+    # What the disturbances of a sample add to its command at once, at most.
     at_once = _largest(form[n:end], bounds) + sum(
         (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
     )
@@ -78,7 +56,14 @@ def motor_command(
     left = limit - at_once
     name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
     output = Output(name, unit, rows, left if left > 0 else None)
-    return MotorCommand(output, at_once, limit)
+    assumption = Assumption.create(
+        "not-quantized.command",
+        limit=rounded_down(limit, unit),
+        less=at_once > 0 and "errors",
+        at_once=at_once > 0 and rounded_up(at_once, unit),
+        output=name,
+    )
+    return (output,), (assumption,)
 
 
 def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:

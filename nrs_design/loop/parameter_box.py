@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product, starmap
+from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.loop.located import labelled_ends
@@ -69,19 +69,19 @@ class Box:
         most two in each coordinate this decides it.
         """
         known = dict(corners)
-        # Rows that are the same objects are compared once; kept here, no other gets their ids.
-        compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
         # Neighbors are in the middle on one axis less, so they come first.
         for at, values in sorted(self._grid(between=True), key=lambda item: item[0].count(MIDDLE)):
             if MIDDLE not in at:
                 continue
             i = at.index(MIDDLE)
             low, high = (known[*at[:i], end, *at[i + 1 :]] for end in ("min", "max"))
-            found = known[at] = rows_at(values)
-            triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
-            if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
-                raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
-            compared |= triples
+            known[at] = rows_at(values)
+            for rows in zip(known[at], low, high, strict=True):
+                # Most rows do not change at all along an axis.
+                row, x, y = map(tuple, rows)
+                if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
+                    said = f"the matrix of mode {name} is not affine in each parameter"
+                    raise InternalError(said)
 
     def _grid(self, *, between: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
         """Yield labels and values at the ends of all ranges, and halfway between two."""
@@ -92,17 +92,3 @@ class Box:
         for at in product(*axes):
             values = zip(self.ranges, (value for _, value in at), strict=True)
             yield tuple(label for label, _ in at), dict(values)
-
-
-def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:
-    """Tell whether a row is the mean of two; most rows do not change at all along an axis."""
-    return row == a == b or all(starmap(_is_middle, zip(row, a, b, strict=True)))
-
-
-def _is_middle(entry: Fraction, x: Fraction, y: Fraction) -> bool:
-    """Tell whether an entry is halfway between two, without reducing fractions on the way."""
-    # Most entries are one zero.
-    if entry is x is y:
-        return True
-    (n, d), (p, q), (r, s) = (number.as_integer_ratio() for number in (entry, x, y))
-    return 2 * n * q * s == (p * s + r * q) * d

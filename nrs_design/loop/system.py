@@ -107,7 +107,9 @@ def close_sampled_loop(
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
     clock, rest, counted = count_stays(conditions.switching, grouped(items), period)
-    driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
+    driven, unlimited = motor_command(
+        conditions.largest_command, conditions.command, loop, channels
+    )
     system = SwitchedSystem(
         name=conditions.name,
         time=Time.DISCRETE,
@@ -115,7 +117,7 @@ def close_sampled_loop(
         modes=tuple(item.mode for item in modes),
         assumptions=(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
-            *(() if driven is None else (driven.assumption,)),
+            *unlimited,
             *counted,
         ),
         switching=assemble_switching(rest, grouped(modes), _resets(conditions.idle, loop, design)),
@@ -124,7 +126,7 @@ def close_sampled_loop(
         else None,
         sample_time=sampling.longest_step,
         channels=channels,
-        outputs=(*outputs, *(() if driven is None else (driven.output,))),
+        outputs=(*outputs, *driven),
         roundings=tuple(_roundings(loop, channels, items)),
         clock=_clock(sampling, items) or clock,
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,

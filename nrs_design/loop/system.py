@@ -43,7 +43,7 @@ from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
-from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.linear_form import coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
@@ -245,15 +245,7 @@ def _roundings(
     n, named = len(loop.states), {channel.name for channel in channels}
     kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
     for j, name in enumerate(loop.program.roundings):
-        rows = _rows_over(kept, (item.period.sizes[j] for item in items))
+        sizes = (item.period.sizes[j] for item in items)
+        rows = (RationalMatrix.from_rows([[size[i] for i in kept]]) for size in sizes)
         columns = (item.column(len(INPUTS) + j) for item in items)
         yield Rounding(name, tuple(columns), tuple(rows))
-
-
-def _rows_over(kept: Sequence[int], forms: Iterable[LinearForm]) -> Iterator[RationalMatrix]:
-    """Yield some entries of forms as rows; where corners share a form, it is one row."""
-    made: dict[int, RationalMatrix] = {}
-    for form in forms:
-        if id(form) not in made:
-            made[id(form)] = RationalMatrix.from_rows([[form[i] for i in kept]])
-        yield made[id(form)]

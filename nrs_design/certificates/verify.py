@@ -30,7 +30,7 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import LoadedSpec
+    from nrs_design.spec import InteractionDesignSpec, LoadedSpec, Spec
 
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
@@ -64,11 +64,10 @@ def _verify(document: Mapping[str, Any], spec: LoadedSpec, plant: Plant | None) 
         return altered
     if (foreign := find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
-    from nrs_design.certificates.ages import declaring_more
     from nrs_design.loop.assemble import assemble_from_text
 
     ages = read_ages(document)
-    said = spec.spec if ages is None else declaring_more(spec.spec, ages)
+    said = spec.spec if ages is None else _declaring_more(spec.spec, ages)
     if said is None:
         return Verification(None, "its ages of the force are not all those of the spec")
     gains = read_gains(document)
@@ -81,6 +80,17 @@ def _verify(document: Mapping[str, Any], spec: LoadedSpec, plant: Plant | None) 
         if getattr(held, field.name) != getattr(system, field.name):
             return Verification(None, f"its field {field.name!r} is not that of the spec")
     return check_document(document, system)
+
+
+def _declaring_more(spec: Spec, ages: tuple[int, int]) -> InteractionDesignSpec | None:
+    """Return the spec as if it declared these ages of the force, in samples; None if it may not."""
+    from nrs_design.spec.sampling import LONGEST_DELAY
+
+    if spec.kind != "interaction-design" or spec.sampling is None:
+        return None
+    low, high = spec.sampling.delay
+    covered = 0 <= ages[0] <= low and high <= ages[1] <= LONGEST_DELAY
+    return spec.declaring_ages(ages) if covered else None
 
 
 def find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:

@@ -13,8 +13,6 @@ from nrs_design.cli.printing import is_quiet, say, wants_details
 from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
-    from fractions import Fraction
-
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
     from nrs_design.exporters.deployed import DeployedFiles
@@ -169,46 +167,14 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
     if verdict in _NEXT:
         say(_NEXT[verdict])
     if spec is not None and wants_details():
-        _print_gains(certificate, spec)
+        _print_gains(certificate)
 
 
-def _print_gains(certificate: Certificate, spec: Spec) -> None:
-    if not certificate.gains:
-        return
+def _print_gains(certificate: Certificate) -> None:
     from nrs_design.certificates.units import gain_units
-    from nrs_design.spec import InteractionDesignSpec
 
     units = gain_units(certificate)
     for name, gains in certificate.gains.items():
         if gains:
             said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
             say(f"  {name}: {', '.join(said)}")
-    if not isinstance(spec, InteractionDesignSpec):
-        return
-    from nrs_design.controllers.gains import designed_gains
-
-    if found := ", ".join(map(" ".join, designed_gains(spec, certificate.gains))):
-        say(f"  as recorded, within what the spec allows, not designed again (gate does): {found}")
-    if spec.sampling is not None:
-        _print_sampled_derivative(certificate, spec.sampling.period.exact)
-
-
-def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> None:
-    """Say which Kd a program has that multiplies by Kd/T, where that is another one."""
-    from nrs_design.certificates.units import gain_units
-    from nrs_design.controllers.float32 import exact_decimal
-    from nrs_design.controllers.gains import MOTION
-    from nrs_design.controllers.laws import ProportionalDerivative
-    from nrs_design.spec import parse_exact
-
-    gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
-    if not gains:
-        return  # The robot closes its own motion loop.
-    motion = ProportionalDerivative.of(gains)
-    factor = motion.over(period)
-    if factor * period != motion.Kd:
-        units = gain_units(certificate)[MOTION]
-        say(
-            f"  {MOTION}: a program multiplies by Kd/T = {exact_decimal(factor)} {units['Kp']}, "
-            f"which makes its Kd about {float(factor * period):.10g} {units['Kd']}"
-        )

@@ -193,15 +193,13 @@ def _assemble_continuous(
     state: SharedState,
     constants: Sequence[ConstantParameter],
 ) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
-    from nrs_design.loop.close_loop import close_loop
+    from nrs_design.loop.close_loop import check_memory, close_loop, with_command
 
     limited = conditions.initial_force is not None
     system, modes = close_loop(
         conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
     )
     if conditions.disturbances is not None:
-        from nrs_design.loop.commanded import check_memory, with_command
-
         check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
     if limited:

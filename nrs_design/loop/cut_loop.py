@@ -36,8 +36,8 @@ from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.calendar import Calendar, CommandTiming, Turn
 from nrs_design.loop.flow import HeldDrive
-from nrs_design.loop.joint import Joint
 from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
+from nrs_design.loop.parameter_box import Joint
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import NOTHING, Contact, Rows, SampledLoop
 from nrs_design.models.actuator import Actuator, ActuatorRanges

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
+from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
@@ -30,7 +32,6 @@ from nrs_design.loop.free_motion import (
     outputs_of,
 )
 from nrs_design.loop.located import ConstantParameter, enclosures_of, grouped
-from nrs_design.loop.motor_command import motor_command
 from nrs_design.loop.program import (
     FORCE_ERROR,
     INPUTS,
@@ -38,14 +39,16 @@ from nrs_design.loop.program import (
     ROUNDED_REFERENCE,
     SampledProgram,
 )
-from nrs_design.loop.sampled import SampledLoop
+from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Channel, Rounding
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
@@ -53,6 +56,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
+from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 
@@ -107,7 +111,7 @@ def close_sampled_loop(
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
     clock, rest, counted = count_stays(conditions.switching, grouped(items), period)
-    driven, unlimited = motor_command(
+    driven, unlimited = _motor_command(
         conditions.largest_command, conditions.command, loop, channels
     )
     system = SwitchedSystem(
@@ -249,3 +253,56 @@ def _roundings(
         rows = (RationalMatrix.from_rows([[size[i] for i in kept]]) for size in sizes)
         columns = (item.column(len(INPUTS) + j) for item in items)
         yield Rounding(name, tuple(columns), tuple(rows))
+
+
+def _motor_command(
+    largest: Fraction | None,
+    unit: str,
+    loop: SampledLoop,
+    channels: Sequence[Channel],
+) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
+    """Return the command under disturbances, roundings included, and what it leaves out.
+
+    While it stays below the limit of the driver, the driver does nothing but what the model says:
+    so a bound from rest, below the limit, excludes saturation under the same disturbances.
+
+    Impedance controllers change the reference after the command, so it is one and the same form of
+    the states in all modes, in contact and free. A rounding is at most a share of other forms, so
+    the command is a mixture of rows in which every share is added or subtracted. Nothing without
+    disturbances or a limit, or where it is not of this form.
+    """
+    moving = all(law.law.commands == "velocity" for law in loop.program.laws)
+    if largest is None or not channels or not moving or loop.calendar.holds:
+        return (), ()
+    sample = loop.sample(loop.program.laws[0], loop.calendar.ages[0], NOTHING)
+    form, n = sample.command, len(loop.states)
+    end = n + len(INPUTS)
+    bounds = {channel.name: channel.bound for channel in channels}
+    shares = list(zip(form[end:], sample.sizes, strict=True))
+    # What the disturbances of a sample add to its command at once, at most.
+    at_once = _largest(form[n:end], bounds) + sum(
+        (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
+    )
+    rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
+    rows = tuple(
+        RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
+        for signed in product(*([row, [-v for v in row]] for row in rounded))
+    )
+    limit = float32_not_above(largest)
+    left = limit - at_once
+    name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
+    output = Output(name, unit, rows, left if left > 0 else None)
+    assumption = Assumption.create(
+        "not-quantized.command",
+        limit=rounded_down(limit, unit),
+        less=at_once > 0 and "errors",
+        at_once=at_once > 0 and rounded_up(at_once, unit),
+        output=name,
+    )
+    return (output,), (assumption,)
+
+
+def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
+    """Return the largest value of a form of the inputs; inputs without a bound are zero."""
+    sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
+    return sum(sizes, Fraction(0))

@@ -12,11 +12,10 @@ from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
+    assume,
     assume_constants,
     assume_data,
-    assume_logic,
     assume_matrices,
-    assume_points,
     assume_preloads,
     assume_scale,
 )
@@ -145,16 +144,17 @@ def assemble(
     system, modes = _closed(conditions, plant, design, constants, points)
     system = with_constants(system, constants, modes)
     period = None if conditions.sampling is None else conditions.sampling.outer
-    touched = plant.among(design.contacts)
+    # Environments with memory stand at their nominal values at all points.
+    remembers = any(e.law.remembers for e in plant.among(design.contacts))
+    but = points == ENDS and remembers and "memory"
     disturbed = bool(system.channels) and period is not None
     assumptions = (
         *system.assumptions,
         *design.sensor.assumptions(period, disturbed=disturbed, axis=spec.axis),
-        *assume_logic(spec),
         *assume_data(spec),
         *assume_preloads(conditions.preloads, scale),
         *assume_scale(scale),
-        *assume_points(points, remembers=any(e.law.remembers for e in touched)),
+        *((assume("range.points", points=points, but=but),) if points else ()),
         *assume_constants(system.switching),
     )
     return _on_axis(replace(system, assumptions=assumptions), spec.axis)

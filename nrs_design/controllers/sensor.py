@@ -83,7 +83,6 @@ class Sensor:
     # What may last, by where it comes from: bounds on torques about the pivot in N m.
     errors: Mapping[str, Fraction] = field(default_factory=dict)
     filter: LowPass | None = None  # Of the signal
-    noisy: bool = False  # Whether a power density of noise is given, which is in no bound
 
     @property
     def lasting(self) -> Fraction:
@@ -116,8 +115,6 @@ class Sensor:
                 lasting=rounded_up(self.lasting, unit),
                 parts=tuple(f"{name}: {rounded_up(e, unit)}" for name, e in self.errors.items()),
             )
-        if self.noisy:
-            yield Assumption.create("sensor.noise")
 
 
 def build_sensor(spec: SensorSpec | None) -> Sensor:
@@ -132,4 +129,4 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
     low_pass = None
     if spec.filter is not None:
         low_pass = LowPass(spec.filter.order, to_float32(spec.filter.cutoff.not_below))
-    return Sensor(errors, low_pass, spec.noise_density is not None)
+    return Sensor(errors, low_pass)

@@ -177,13 +177,6 @@ TORQUE_RATE = QuantityKind(
     {"N*m": "a rate is per second: write N*m/s"},
     sliding=_sliding("a rate of force", ("N/s",), "1e-5 N/s", "N*m/s"),
 )
-NOISE_DENSITY = QuantityKind(
-    "a density of noise",
-    ("N^2*m^2*s",),
-    "1e-8 N^2*m^2*s",
-    {"N*m": "that is an rms: square it, and divide by the bandwidth in Hz"},
-    sliding=_sliding("a density of noise", ("N^2*s",), "1e-8 N^2*s", "N^2*m^2*s"),
-)
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
 

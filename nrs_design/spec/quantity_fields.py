@@ -330,7 +330,6 @@ PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, constant=True
 HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False, constant=True)]
 Deflection = Annotated[Quantity, _one(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _one(kinds.MASS, positive=False)]
-NoiseDensity = Annotated[Quantity, _one(kinds.NOISE_DENSITY)]
 Length = Annotated[Quantity, _one(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _one(kinds.LENGTH, signed=True)]
 Angle = Annotated[Quantity, _one(kinds.ANGLE)]

@@ -35,10 +35,6 @@ class SensorSpec(SpecModel, stronger="larger"):
     resolution: field.Torque | None = optional(
         "step of the measured torque in N*m: an error of half a step"
     )
-    noise_density: field.NoiseDensity | None = optional(
-        "one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
-        "(N*m)^2/Hz; in no bound"
-    )
     filter: FilterSpec | None = optional("low-pass of the force signal: a part of the loop")
 
     checks = (

@@ -47,7 +47,6 @@ _SHOWN = (
     kinds.FORCE_GAIN,
     kinds.TORQUE,
     kinds.TORQUE_RATE,
-    kinds.FORCE,
     kinds.LINEAR_STIFFNESS,
 )
 

@@ -33,7 +33,6 @@ _SLIDING: Mapping[str, str] = {
     "N*m/s": "N/s",
     "N*m/rad": "N/m",
     "N*m*s/rad": "N*s/m",
-    "N^2*m^2*s": "N^2*s",
     "kg*m^2": "kg",
     "rad/(N*m)": "m/N",
     "rad/(N*m*s)": "m/(N*s)",

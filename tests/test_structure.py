@@ -197,7 +197,6 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
         "nrs_design.work",
         # How long something took, told beside what was found.
         "nrs_design.search.acceptance",
-        "nrs_design.pipeline.certification",
         "nrs_design.pipeline.runs",
         "nrs_design.cli.printing",
         "nrs_design.cli.gate",

@@ -7,16 +7,13 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
-from nrs_design.proof.evidence.fields import system_fields, written
+from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.system import SwitchedSystem
-
-if TYPE_CHECKING:
-    from nrs_design.models.cut import RangeCut
 
 SCHEMA = "nrs-design/certificate/9"
 # What says nothing about the claim, so that the id does not cover it.
@@ -61,8 +58,6 @@ class Certificate:
     # At which points of the ranges the system stands; empty for all of them. What grows there
     # refutes the spec, and nothing else there says anything of it.
     points: str = ""
-    # In which parts the ranges of constants are cut, each a case of the system; empty for none.
-    cuts: tuple[RangeCut, ...] = ()
     # Smallest and largest age of the force, in samples, where that is more than the spec declares,
     # as its goal `delay` asks. What is proved there holds of the spec.
     ages: tuple[int, int] | None = None
@@ -179,7 +174,6 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "coordinates": certificate.coordinates,
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
         **({} if not certificate.points else {"points": certificate.points}),
-        **({} if not certificate.cuts else {"cuts": written(certificate.cuts)}),
         **({} if certificate.ages is None else {"ages": [*certificate.ages]}),
         **own,
         "statements": [{"kind": item.kind, **item.to_fields()} for item in certificate.statements],

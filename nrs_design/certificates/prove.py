@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
     GROWTH,
@@ -24,13 +24,10 @@ from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
-from nrs_design.proof.evidence.fields import read_list, read_object, read_system, read_text
+from nrs_design.proof.evidence.fields import read_system, read_text
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
-
-if TYPE_CHECKING:
-    from nrs_design.models.cut import RangeCut
 
 MAX_VERDICTS = 2
 MAX_BYTES = 32 * 2**20
@@ -159,7 +156,6 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
         statements=_statements(document, system),
         version=read_text(document["package"]["version"]),
         points=read_points(document),
-        cuts=read_cuts(document),
         ages=read_ages(document),
     )
 
@@ -167,15 +163,6 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
 def read_points(document: Mapping[str, Any]) -> str:
     """Read at which points of the ranges a system stands; empty for all of them."""
     return read_text(document["points"]) if "points" in document else ""
-
-
-def read_cuts(document: Mapping[str, Any]) -> tuple[RangeCut, ...]:
-    """Read in which parts the ranges of constants are cut; empty for none."""
-    if "cuts" not in document:
-        return ()
-    from nrs_design.models.cut import RangeCut
-
-    return tuple(read_object(RangeCut, item) for item in read_list(document["cuts"]))
 
 
 def read_ages(document: Mapping[str, Any]) -> tuple[int, int] | None:

@@ -7,7 +7,7 @@ and the assumptions must be the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,11 +19,9 @@ from nrs_design.certificates.prove import (
     confirmed,
     find_altered,
     held_system,
-    judged,
     prove,
     read_ages,
     read_certificate,
-    read_cuts,
     read_document,
     read_gains,
     read_points,
@@ -32,12 +30,9 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import LoadedSpec
+    from nrs_design.spec import InteractionDesignSpec, LoadedSpec, Spec
 
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
-
-# Says why a proof is rejected, or None.
-FindFault = Callable[[], str | None]
 
 
 def verify(
@@ -57,48 +52,26 @@ def verify_document(
     document: Mapping[str, Any],
     spec: LoadedSpec | None = None,
     plant: Plant | None = None,
-    proof: FindFault | None = None,
 ) -> Verification:
-    """Re-check a parsed certificate; spec and plant as for `verify`.
-
-    `proof` says why `nrs_design.certificates.prove.prove` rejects this very document, or None; by
-    default it is asked here. See `nrs_design.certificates.beside`.
-    """
+    """Re-check a parsed certificate; spec and plant as for `verify`."""
     if spec is None:
         return prove(document)
-    if proof is None:
-        return confirmed(lambda: _verify(document, spec, plant, check_document))
-
-    def stated(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
-        return Verification(read_certificate(document, system), None)
-
-    belongs = judged(lambda: _verify(document, spec, plant, stated))
-    if belongs.fault is not None:
-        return belongs
-    # The proof is confirmed where it is made; what fails there is no judgement.
-    return Verification(belongs.certificate, proof())
+    return confirmed(lambda: _verify(document, spec, plant))
 
 
-def _verify(
-    document: Mapping[str, Any],
-    spec: LoadedSpec,
-    plant: Plant | None,
-    check: Callable[[Mapping[str, Any], SwitchedSystem], Verification],
-) -> Verification:
+def _verify(document: Mapping[str, Any], spec: LoadedSpec, plant: Plant | None) -> Verification:
     if (altered := find_altered(document)) is not None:
         return altered
     if (foreign := find_foreign(document, spec)) is not None:
         return Verification(None, foreign)
-    from nrs_design.certificates.ages import declaring_more
     from nrs_design.loop.assemble import assemble_from_text
 
     ages = read_ages(document)
-    said = spec.spec if ages is None else declaring_more(spec.spec, ages)
+    said = spec.spec if ages is None else _declaring_more(spec.spec, ages)
     if said is None:
         return Verification(None, "its ages of the force are not all those of the spec")
     gains = read_gains(document)
-    points, cuts = read_points(document), read_cuts(document)
-    system = assemble_from_text(said, gains, plant=plant, points=points, cuts=cuts)
+    system = assemble_from_text(said, gains, plant=plant, points=read_points(document))
     held = held_system(document)
     if not held.enclosures and not is_of_growth(read_certificate(document, system)):
         # Which modes are attained does not matter where nothing grows, and is left out there.
@@ -106,7 +79,18 @@ def _verify(
     for field in fields(SwitchedSystem):
         if getattr(held, field.name) != getattr(system, field.name):
             return Verification(None, f"its field {field.name!r} is not that of the spec")
-    return check(document, system)
+    return check_document(document, system)
+
+
+def _declaring_more(spec: Spec, ages: tuple[int, int]) -> InteractionDesignSpec | None:
+    """Return the spec as if it declared these ages of the force, in samples; None if it may not."""
+    from nrs_design.spec.sampling import LONGEST_DELAY
+
+    if spec.kind != "interaction-design" or spec.sampling is None:
+        return None
+    low, high = spec.sampling.delay
+    covered = 0 <= ages[0] <= low and high <= ages[1] <= LONGEST_DELAY
+    return spec.declaring_ages(ages) if covered else None
 
 
 def find_foreign(document: Mapping[str, Any], spec: LoadedSpec) -> str | None:

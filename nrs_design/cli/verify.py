@@ -98,17 +98,12 @@ def verify(
 
 
 def _verify(certificate: Path, spec: Path | None) -> tuple[Verification, LoadedSpec | None]:
-    from nrs_design.certificates.prove import prove, read_document
-
-    document = read_document(certificate)
-    if spec is None:
-        return prove(document), None
-    from nrs_design.certificates.beside import proof_beside
+    from nrs_design.certificates.prove import read_document
     from nrs_design.certificates.verify import verify_document
 
-    with proof_beside(document) as proof:
-        loaded = take_spec(spec)
-        return verify_document(document, loaded, proof=proof), loaded
+    document = read_document(certificate)
+    loaded = None if spec is None else take_spec(spec)
+    return verify_document(document, loaded), loaded
 
 
 _NEXT = {
@@ -167,23 +162,14 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
     if verdict in _NEXT:
         say(_NEXT[verdict])
     if spec is not None and wants_details():
-        _print_gains(certificate, spec)
+        _print_gains(certificate)
 
 
-def _print_gains(certificate: Certificate, spec: Spec) -> None:
-    if not certificate.gains:
-        return
+def _print_gains(certificate: Certificate) -> None:
     from nrs_design.certificates.units import gain_units
-    from nrs_design.spec import InteractionDesignSpec
 
     units = gain_units(certificate)
     for name, gains in certificate.gains.items():
         if gains:
             said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
             say(f"  {name}: {', '.join(said)}")
-    if not isinstance(spec, InteractionDesignSpec):
-        return
-    from nrs_design.controllers.gains import designed_gains
-
-    if found := ", ".join(map(" ".join, designed_gains(spec, certificate.gains))):
-        say(f"  as recorded, within what the spec allows, not designed again (gate does): {found}")

@@ -161,17 +161,6 @@ def _given(spec: InteractionDesignSpec, name: str, gain: str) -> Fraction | None
     return None if said is None else to_float32(exact_number(said))
 
 
-def designed_gains(
-    spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]
-) -> Iterator[tuple[str, str]]:
-    """Yield controller and name of those gains of a design for which its spec gives no number."""
-    free = {*free_gains(spec)}
-    for name, own in gains.items():
-        for gain in own:
-            if (name, gain) in free or _given(spec, name, gain) is None:
-                yield name, gain
-
-
 def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivative:
     """Return the motion controller; none where the robot has its own."""
     loop = spec.motion_loop

@@ -15,30 +15,29 @@ from nrs_design.loop.assumptions import (
     assume,
     assume_constants,
     assume_data,
-    assume_logic,
     assume_matrices,
-    assume_points,
     assume_preloads,
     assume_scale,
 )
-from nrs_design.loop.cases import in_cases
 from nrs_design.loop.constant_parameters import (
     constant_lateness,
     constants_of,
     with_constants,
-    within,
 )
 from nrs_design.loop.constraints import assemble_switching
-from nrs_design.loop.located import grouped
-from nrs_design.loop.parameters import constant_parameters, corner_modes, read_parameters
-from nrs_design.models.cut import Ends, RangeCut, cut_ranges
+from nrs_design.loop.given_matrices import (
+    constant_parameters,
+    corner_modes,
+    modes_with_misses,
+    read_parameters,
+)
+from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter, grouped
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.loop.constant_parameters import ConstantParameter, Corner
     from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
@@ -58,7 +57,6 @@ def assemble_from_text(
     scale: Fraction = DECLARED,
     plant: Plant | None = None,
     points: str = "",
-    cuts: Sequence[RangeCut] = (),
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
@@ -70,8 +68,8 @@ def assemble_from_text(
     if spec.kind == "switched-system":
         if gains:
             raise AssemblyError("given matrices have no gains")
-        if points or cuts:
-            raise AssemblyError("the ranges of given matrices are not cut, and have no points")
+        if points:
+            raise AssemblyError("the ranges of given matrices have no points")
         return assemble_matrices(spec, scale)
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
@@ -80,7 +78,7 @@ def assemble_from_text(
 
     design = design_from_gains(spec, gains)
     plant = plant or build_plant(spec)
-    return assemble(spec, plant, design, scale, points=points, cuts=cuts)
+    return assemble(spec, plant, design, scale, points=points)
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
@@ -93,8 +91,6 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     items = tuple(chain.from_iterable(corner_modes(mode, parameters) for mode in spec.modes))
     if spec.misses is not None:
-        from nrs_design.loop.misses import modes_with_misses
-
         items, switching = modes_with_misses(items, spec.misses)
     else:
         switching = assemble_switching(spec.switching, grouped(items), resets)
@@ -106,8 +102,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         assumptions=assume_matrices(spec, parameters, scale),
         switching=switching,
     )
-    constants = constant_parameters(parameters)
-    return with_constants(system, constants, tuple(item.corner for item in items))
+    return with_constants(system, constant_parameters(parameters), items)
 
 
 def assemble(
@@ -117,21 +112,18 @@ def assemble(
     scale: Fraction = DECLARED,
     *,
     points: str = "",
-    cuts: Sequence[RangeCut] = (),
-    parts: Sequence[SwitchedSystem] = (),
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Every declared range is stretched by the scale, not negative, about its nominal value. Those of
-    constants are cut in parts, each a case, as `closed_part` returns it if `parts` does not hold
-    it. An `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of
-    switching make too many switches.
+    Every declared range is stretched by the scale, not negative, about its nominal value. An
+    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
+    make too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
     _check_scale(scale)
     conditions = build_conditions(spec)
-    if points and (points not in POINTS or conditions.sampling is None or cuts):
+    if points and (points not in POINTS or conditions.sampling is None):
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
     plant = plant.scaled(scale, conditions.contacted)
@@ -149,55 +141,33 @@ def assemble(
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
-    system, corners = _closed(conditions, plant, design, constants, points)
-    system = with_constants(system, constants, corners)
-    constant = tuple(assume_constants(system.switching))
-    if cuts:
-        whole = {c.said.name: (c.said.low, c.said.high) for c in constants}
-        each = cut_ranges(whole, cuts)
-        parts = parts or [closed_part(conditions, plant, design, drive, part) for part in each]
-        system = in_cases(system, parts)
-        constant = (*constant, assume("constant.cases", cases=len(system.cases)))
+    system, modes = _closed(conditions, plant, design, constants, points)
+    system = with_constants(system, constants, modes)
     period = None if conditions.sampling is None else conditions.sampling.outer
-    touched = plant.among(design.contacts)
+    # Environments with memory stand at their nominal values at all points.
+    remembers = any(e.law.remembers for e in plant.among(design.contacts))
+    but = points == ENDS and remembers and "memory"
     disturbed = bool(system.channels) and period is not None
     assumptions = (
         *system.assumptions,
         *design.sensor.assumptions(period, disturbed=disturbed, axis=spec.axis),
-        *assume_logic(spec),
         *assume_data(spec),
         *assume_preloads(conditions.preloads, scale),
         *assume_scale(scale),
-        *assume_points(points, remembers=any(e.law.remembers for e in touched)),
-        *constant,
+        *((assume("range.points", points=points, but=but),) if points else ()),
+        *assume_constants(system.switching),
     )
     return _on_axis(replace(system, assumptions=assumptions), spec.axis)
-
-
-def closed_part(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-    drive: str,
-    part: Ends,
-) -> SwitchedSystem:
-    """Return the closed loop with constants in a part of their ranges, where they may change.
-
-    `drive` is the part of the spec that the motor is.
-    """
-    late = part.get(conditions.constant_delay_key or "", conditions.command_delay)
-    system, _ = _closed(replace(conditions, command_delay=late), within(plant, drive, part), design)
-    return system
 
 
 def _closed(
     conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
-    constants: Sequence[ConstantParameter] = (),
-    points: str = "",
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Return the closed loop with all ranges varying, and the corner of each mode."""
+    constants: Sequence[ConstantParameter],
+    points: str,
+) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
+    """Return the closed loop with all ranges varying, and its modes."""
     if conditions.sampling is None:
         state = state_of(conditions, plant, design)
         return _assemble_continuous(conditions, plant, state, constants)
@@ -222,23 +192,21 @@ def _assemble_continuous(
     plant: Plant,
     state: SharedState,
     constants: Sequence[ConstantParameter],
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    from nrs_design.loop.close_loop import close_loop
+) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
+    from nrs_design.loop.close_loop import check_memory, close_loop, with_command
 
     limited = conditions.initial_force is not None
-    system, corners = close_loop(
+    system, modes = close_loop(
         conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
     )
     if conditions.disturbances is not None:
-        from nrs_design.loop.commanded import check_memory, with_command
-
         check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
     if limited:
         from nrs_design.loop.saturation import with_saturation
 
         system = with_saturation(system, conditions, plant.actuator, state)
-    return system, corners
+    return system, modes
 
 
 def state_of(

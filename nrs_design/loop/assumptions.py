@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import starmap
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
-from nrs_design.loop.parameters import UncertainParameter
+from nrs_design.models.interval import Interval
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import exact_text
@@ -34,22 +35,21 @@ _STAYS = {
 
 
 def assume_matrices(
-    spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
+    spec: SwitchedSystemSpec, parameters: Mapping[str, Interval], scale: Fraction
 ) -> tuple[Assumption, ...]:
     """Return the assumptions of a `switched-system` spec; the parameters are scaled already."""
     return (
         GIVEN_MATRICES[0],
-        *map(_assume_parameter, parameters),
+        *starmap(_assume_parameter, parameters.items()),
         *assume_scale(scale),
         *_assume_switches(spec),
     )
 
 
-def _assume_parameter(parameter: UncertainParameter) -> Assumption:
-    interval, name = parameter.interval, parameter.name
+def _assume_parameter(name: str, interval: Interval) -> Assumption:
     if interval.low == interval.high:
         return assume("range.value", name=name, value=exact_text(interval.low))
-    how = "range.varies" if parameter.varies else "range.constant"
+    how = "range.varies" if interval.varies else "range.constant"
     return assume(how, name=name, ends=interval.text)
 
 
@@ -135,12 +135,6 @@ def assume_tissue(
     )
 
 
-def assume_memory(environments: Sequence[Environment]) -> Iterator[Assumption]:
-    """Yield the assumptions about environments with memory or mass."""
-    for e in environments:
-        yield from e.law.assumptions(e.name, alone=len(environments) == 1)
-
-
 def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
     """Yield the assumption of each control law about contact.
 
@@ -160,17 +154,6 @@ def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
-def assume_points(points: str, *, remembers: bool) -> tuple[Assumption, ...]:
-    """Return the points of the ranges at which the modes stand; nothing for all points.
-
-    Environments with memory always stand at their nominal values.
-    """
-    if not points:
-        return ()
-    but = points == "ends" and remembers and "memory"
-    return (assume("range.points", points=points, but=but),)
-
-
 def assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
     """Yield the unit of the motor command, if it is not rpm."""
     if command != THESIS_COMMAND:
@@ -184,10 +167,13 @@ def command_in(granted: Iterable[Assumption]) -> str:
 
 
 def assume_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
-    """Yield the coverage of identified ranges, and the doubts about identified values."""
+    """Yield a mode logic with dwell times, and coverage of and doubts about identified values."""
     from nrs_design.spec.interaction_parts import INTERFACES
     from nrs_design.spec.plausible import unusual
 
+    if spec.mode_logic is not None and not spec.switching.is_arbitrary:
+        yield assume("logic.timer")
+        yield assume("logic.any-signal")
     for key, drive in spec.drives.items():
         if drive.range_covers is not None:
             name = "robot" if key in INTERFACES else key
@@ -222,13 +208,6 @@ def assume_preloads(preloads: Mapping[str, Preload], scale: Fraction) -> Iterato
             yield assume("preload.scaled", environment=name, law=law.name, low=low, high=high)
         else:
             yield assume(f"preload.{law.name}", environment=name, low=low, high=high)
-
-
-def assume_logic(spec: InteractionDesignSpec) -> Iterator[Assumption]:
-    """Yield the assumptions about a mode logic with dwell times."""
-    if spec.mode_logic is not None and not spec.switching.is_arbitrary:
-        yield assume("logic.timer")
-        yield assume("logic.any-signal")
 
 
 def assume_constants(switching: Switching) -> Iterator[Assumption]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from fractions import Fraction
+from math import ceil, floor
 
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.models.interval import Interval
 from nrs_design.spec.sampling import SamplingSpec
+
+ZERO = Fraction(0)
 
 
 class Turn(StrEnum):
@@ -28,6 +33,83 @@ class Turn(StrEnum):
     def has_law(self) -> bool:
         """Whether a law takes a force sample."""
         return self in (Turn.BOTH, Turn.ADMITTANCE)
+
+
+@dataclass(frozen=True, slots=True)
+class CommandTiming:
+    """Delays of commands; the newest command that has arrived is in force.
+
+    The command of the sample at time t takes effect between ``t + earliest`` and ``t + latest``,
+    each at a time of its own. Ages of commands count from the sample at which a period begins: that
+    of age 0 is computed at it.
+    """
+
+    period: Fraction  # From sample to sample in s
+    # earliest, latest: from a sample to its command, in s.
+    earliest: Fraction = ZERO
+    latest: Fraction = ZERO
+    jitter: Fraction = ZERO  # Largest deviation of a period from its nominal length, in s
+    # The time from every sample to its command in s, of all that may be, and periods do not differ.
+    at: Fraction | None = None
+
+    @property
+    def lengths(self) -> Interval:
+        """How long a period is, in s."""
+        return Interval(self.period, self.period - self.jitter, self.period + self.jitter)
+
+    @property
+    def steps(self) -> Interval:
+        """Lengths of the periods in s; one length if the delay is the same at every sample."""
+        return self.lengths if self.at is None else Interval.point(self.period)
+
+    @property
+    def oldest(self) -> int:
+        """Age of the command that is in force when a period begins; a newer one may be already."""
+        return ceil(self.latest / self.lengths.low)
+
+    @property
+    def newest(self) -> int:
+        """Age of the newest command that may take effect before a period ends."""
+        return min(floor(self.earliest / self.lengths.high), self.oldest)
+
+    @property
+    def varies(self) -> bool:
+        """Whether periods differ, or times from a sample to its command."""
+        return self.earliest < self.latest or self.jitter > 0
+
+    @property
+    def within(self) -> range:
+        """Ages of the commands that may take effect within a period, the oldest first."""
+        return range(self.oldest - 1, self.newest - 1, -1)
+
+    def points(self) -> Iterator[tuple[tuple[str, ...], CommandTiming]]:
+        """Yield times that are attained at every sample, with the label of each.
+
+        Where each sample has its own time, one is followed by the other.
+        """
+        if not self.varies:
+            yield (), self
+        elif len(self.within) == 1 and not self.jitter:
+            (age,) = self.within
+            yield (f"h{age}-max",), replace(self, at=self.earliest)
+            yield (f"h{age}-min",), replace(self, at=self.latest)
+        else:
+            yield (), replace(self, at=self.latest)
+
+    def left(self, age: int) -> Interval:
+        """Return how long before the end of a period commands of an age or newer are in force.
+
+        Where none of them takes effect in a period, that is no time. The ends, in s, are not
+        negative, nor above the longest period.
+        """
+        if self.at is not None:
+            begin = min(max(self.at - age * self.period, ZERO), self.period)
+            return Interval.point(self.period - begin)
+        shortest, longest = self.lengths.low, self.lengths.high
+        begins = self.earliest - age * longest, self.latest - age * shortest
+        low = shortest - min(max(begins[1], ZERO), shortest)
+        high = longest - min(max(begins[0], ZERO), longest)
+        return Interval(high, low, high)
 
 
 @dataclass(frozen=True, slots=True)

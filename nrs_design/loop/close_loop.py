@@ -10,11 +10,13 @@ decreases in the corners decreases there, however fast the parameters move.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from itertools import permutations, product
 
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.loop.constant_parameters import ConstantParameter, Corner
+from nrs_design.errors import AssemblyError
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
@@ -22,16 +24,28 @@ from nrs_design.loop.free_motion import (
     flights_of,
     free_modes,
     lost_contact,
+    outputs_of,
     pulls_of,
 )
-from nrs_design.loop.located import MatrixMode, enclosures_of, grouped
+from nrs_design.loop.located import (
+    ConstantParameter,
+    MatrixMode,
+    Spot,
+    enclosures_of,
+    grouped,
+    spot_of,
+)
 from nrs_design.loop.shared_state import SharedState
-from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import coordinates
+from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import SwitchingSpec
+from nrs_design.spec.build_plant import Bounds
 
 
 def close_loop(
@@ -42,8 +56,8 @@ def close_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     limited: bool = False,
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Assemble every mode of an interaction design; say at which ends of constants each is.
+) -> tuple[SwitchedSystem, Sequence[MatrixMode]]:
+    """Assemble every mode of an interaction design.
 
     Without rules any controller may follow any other at any time. Contact, losable or kept, may by
     default be lost where that is modelled, and a statement says whether it covers it. `limited`:
@@ -75,7 +89,7 @@ def close_loop(
         flights=flights_of(items, state.environments, pulls) if free else None,
         enclosures=tuple(enclosures_of(items)),
     )
-    return system, tuple(item.corner for item in items)
+    return system, items
 
 
 def _resets(
@@ -123,3 +137,61 @@ def _in_contact(
                 "" if e is None else e.name,
                 RationalMatrix.from_rows(rows),
             )
+
+
+def with_command(
+    system: SwitchedSystem, state: SharedState, disturbances: Bounds, torque: Fraction
+) -> SwitchedSystem:
+    """Let the largest velocity command act on a loop, with force and velocity as its outputs.
+
+    The command goes where the velocity of the admittance is subtracted, into the motion loop, in
+    contact and free alike. `torque` is the limit of the contact force about the pivot, in N m. An
+    `AssemblyError` if it is not modelled for these controllers or environments.
+    """
+    laws = {controller.name: controller.law for controller in state.design.controllers}
+    plain = all(law.commands == "velocity" for law in laws.values())
+    if not plain or not state.environments:
+        raise AssemblyError(
+            "a velocity command is modelled for impedance controllers that touch something",
+            remedy="leave disturbances out",
+            at=("disturbances",),
+        )
+    sprung = next((name for name, law in laws.items() if law.spring), None)
+    if sprung is not None:
+        raise AssemblyError(
+            "a velocity command moves the position that the spring Kt draws the robot to",
+            remedy="leave command out, or Kt",
+            at=("controllers", sprung, "Kt"),
+        )
+    ((name, (bound, unit)),) = disturbances.items()
+    free = () if system.contact is None else system.contact.free
+    columns = tuple(_column(mode, state.motion) for mode in (*system.modes, *free))
+    velocity = state.motion.output(system.order)
+    return replace(
+        system,
+        assumptions=(*system.assumptions, Assumption("inputs.command")),
+        channels=(Channel(name, unit, bound, columns),),
+        outputs=outputs_of(velocity, system.states, state.environments, torque),
+    )
+
+
+def check_memory(environments: Sequence[Environment]) -> None:
+    """Refuse tissue that creeps, for which no bound under a command is stated."""
+    if any(environment.law.remembers for environment in environments):
+        raise AssemblyError(
+            "a bound under a velocity command is stated on elastic and damped environments",
+            remedy="leave disturbances out",
+            at=("disturbances",),
+        )
+
+
+def _column(mode: Mode, motion: Realization | JointMotionLoop) -> RationalMatrix:
+    """Return the input matrix of the velocity command in a mode, with the motor of its corner."""
+    n = len(mode.A.numerators)
+    if isinstance(motion, JointMotionLoop):
+        # The error drives the motor by Km Kp/tau, a command by Km Kd/tau.
+        drive = Fraction(mode.A.numerators[1][0], mode.A.denominator) / motion.Kp
+        column = [[Fraction(1)], [drive * motion.Kd]]
+    else:
+        column = [[row[-1]] for row in motion.rates(coordinates(n + 1)[-1])]
+    return RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.models.cut import Ends
+from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter
 from nrs_design.models.drive import GAIN
 from nrs_design.models.interval import Interval
 from nrs_design.proof.switching import FixedParameter
@@ -20,21 +20,6 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
 
 MAX_CORNERS = 50_000
-
-
-@dataclass(frozen=True, slots=True)
-class ConstantParameter:
-    """One parameter that does not change while the robot runs."""
-
-    said: FixedParameter  # Its name and range
-    # Labels of the low and the high end in names of modes, such as ``k-min``.
-    labels: tuple[str, str]
-    contact: str | None = None  # Contact with this parameter; None if it occurs in all modes
-
-    @property
-    def symbol(self) -> str:
-        """Symbol of the parameter in labels."""
-        return self.labels[0].rpartition("-")[0]
 
 
 def constant_lateness(
@@ -99,37 +84,6 @@ def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParam
                 yield replace(found, contact=environment.name)
 
 
-def within(plant: Plant, drive: str, part: Ends) -> Plant:
-    """Return a plant with constant parameters in a part of their ranges, by name."""
-    ranges = plant.actuator_ranges
-    return replace(
-        plant,
-        environments=tuple(
-            replace(
-                e,
-                ranges=tuple(
-                    interval.within(part.get(f"environments.{e.name}.{key}"))
-                    for key, interval in zip(e.law.keys, e.ranges, strict=True)
-                ),
-            )
-            for e in plant.environments
-        ),
-        actuator_ranges=replace(
-            ranges,
-            gain=ranges.gain.within(part.get(f"{drive}.gain")),
-            time_constant=ranges.time_constant.within(part.get(f"{drive}.time_constant")),
-        ),
-        drive=plant.drive
-        and replace(
-            plant.drive,
-            ranges={
-                symbol: interval.within(part.get(f"{drive}.{_DRIVEN[symbol][0]}"))
-                for symbol, interval in plant.drive.ranges.items()
-            },
-        ),
-    )
-
-
 def _between_ends(
     name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool
 ) -> ConstantParameter:
@@ -137,23 +91,16 @@ def _between_ends(
     return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
 
 
-class Corner(NamedTuple):
-    """Ends of the ranges at which a mode stands."""
-
-    mode: str
-    varying: tuple[str, ...]  # Parts of the name without the ends of constant parameters
-    # End of each constant parameter, low before high, or number of its curve point
-    ends: Mapping[str, int]
-
-
-def corner_counts(corners: Sequence[Corner], parameters: Iterable[ConstantParameter]) -> list[int]:
+def corner_counts(
+    modes: Iterable[AbstractLocatedMode], parameters: Iterable[ConstantParameter]
+) -> list[int]:
     """Return the number of corners of each constant parameter: two, or more around a curve."""
-    names = [parameter.said.name for parameter in parameters]
-    return [1 + max(1, *(at.ends.get(name, 0) for at in corners)) for name in names]
+    ends = [dict(mode.spot.corner) for mode in modes]
+    return [1 + max(1, *(at.get(p.said.name, 0) for at in ends)) for p in parameters]
 
 
 def constant_sets(
-    corners: Sequence[Corner], parameters: Sequence[ConstantParameter]
+    modes: Sequence[AbstractLocatedMode], parameters: Sequence[ConstantParameter]
 ) -> Iterator[tuple[str, ...]]:
     """Yield, for each mode, its copies at the corners of the constant parameters.
 
@@ -165,11 +112,12 @@ def constant_sets(
     # By the varying parts of the name, and the corner of the constants.
     known: dict[tuple[tuple[str, ...], tuple[int | None, ...]], str] = {}
     first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
-    for at in corners:
-        ends = tuple(at.ends.get(parameter.said.name) for parameter in parameters)
-        known[at.varying, ends] = at.mode
-        first[at.varying, tuple(end is not None for end in ends)] = None
-    counts = corner_counts(corners, parameters)
+    for mode in modes:
+        corner = dict(mode.spot.corner)
+        ends = tuple(corner.get(parameter.said.name) for parameter in parameters)
+        known[mode.varying, ends] = mode.name
+        first[mode.varying, tuple(end is not None for end in ends)] = None
+    counts = corner_counts(modes, parameters)
     for varying, has in first:
         every = product(*map(range, counts))
         keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
@@ -181,7 +129,7 @@ def constant_sets(
 def with_constants(
     system: SwitchedSystem,
     parameters: Sequence[ConstantParameter],
-    corners: Sequence[Corner],
+    modes: Sequence[AbstractLocatedMode],
 ) -> SwitchedSystem:
     """Return the system, with a mode for each corner, with parameters that do not change.
 
@@ -189,14 +137,14 @@ def with_constants(
     """
     if not parameters:
         return system
-    count = prod(corner_counts(corners, parameters)) * len(system.modes)
+    count = prod(corner_counts(modes, parameters)) * len(system.modes)
     if count > MAX_CORNERS:
         raise AssemblyError(
             f"the modes at all corners of the constant parameters are up to {count}, at most "
             f"{MAX_CORNERS} are looked at",
             remedy="leave out `varies: false` for some of the ranges",
         )
-    sets = tuple(constant_sets(corners, parameters))
+    sets = tuple(constant_sets(modes, parameters))
     said = tuple(parameter.said for parameter in parameters)
     return replace(
         system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=said)

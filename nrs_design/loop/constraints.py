@@ -1,17 +1,26 @@
-"""From the switching rules of a spec to those of the assembled modes."""
+"""From the switching rules of a spec to those of the assembled modes.
+
+In a sampled loop stays are counted: a clock says which controller may be in force at a sample.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, islice, permutations, product
+from math import ceil
 from typing import TYPE_CHECKING, TypeVar
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.linear_form import coordinates, zero
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.evidence.fields import MAX_STATES
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.switching import Reset, Stay, Switching
+from nrs_design.proof.switching import NOWHERE, Clock, Reset, Stay, Switching
+from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchingSpec
+from nrs_design.spec.misses import MissAutomaton
+from nrs_design.spec.switching import ANY_SIGNAL
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import Controller
@@ -94,3 +103,61 @@ def _limited(found: Iterator[T]) -> tuple[T, ...]:
             at=("switching",),
         )
     return kept
+
+
+def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
+    """Return which modes may be in force at a step, by the automaton of a rule for misses."""
+    pairs = zip(automaton.hit, automaton.miss, strict=True)
+    ahead = ((hit, NOWHERE if miss is None else miss) for hit, miss in pairs)
+    return Clock(automaton.count, in_time, tuple(ahead))
+
+
+def count_stays(
+    rules: SwitchingSpec, modes: Groups, period: Fraction
+) -> tuple[Clock | None, SwitchingSpec, tuple[Assumption, ...]]:
+    """Count stays in samples: return the clock, the rules that it does not hold, and what it says.
+
+    There is no clock where dwell times forbid nothing. `modes` are those of each controller, in
+    contact and free, and follow each other freely; the period is the longest from sample to
+    sample, in s. A state is how many samples a controller has been in force, up to its dwell time.
+    An `AssemblyError` if there are too many of them.
+    """
+    names, counts = [*modes], [_count_samples(rules, name, period) for name in modes]
+    if len(names) < 2 or max(counts) == 1:
+        none = {"dwell_time": None, "longest_dwell_time": None}
+        return None, rules.model_copy(update=none), ()
+    if sum(counts) > MAX_STATES:
+        most = MAX_STATES // len(names)
+        raise AssemblyError(
+            f"the dwell times are {sum(counts)} samples long, at most {MAX_STATES} are counted",
+            remedy=f"write dwell times of up to {most} samples each, which is "
+            f"{exact_text(most * period)} s: a longer stay keeps them",
+            at=("switching", "dwell_time"),
+        )
+    first = [sum(counts[:k]) for k in range(len(counts))]
+    allowed = None if rules.transitions is None else frozenset(rules.transitions)
+
+    def leads(k: int, spent: int) -> tuple[int, ...]:
+        """Return where each controller leads after so many samples of one."""
+        last = counts[k] - 1
+        to = [NOWHERE] * len(names)
+        if spent == last:
+            for other, name in enumerate(names):
+                if allowed is None or (names[k], name) in allowed:
+                    to[other] = first[other]
+        to[k] = first[k] + min(spent + 1, last)
+        return tuple(to)
+
+    ahead = tuple(leads(k, spent) for k, count in enumerate(counts) for spent in range(count))
+    own, *more = (tuple(found) for found in modes.values())
+    clock = Clock(len(ahead), own, ahead, tuple(more[:-1]))
+    each = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
+    return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=each),)
+
+
+def _count_samples(rules: SwitchingSpec, name: str, period: Fraction) -> int:
+    """Return how many samples a stay of a controller has at least."""
+    shortest, _ = rules.stay(name)
+    if shortest is None:
+        return 1
+    return max(ceil(shortest.value / period), 1)

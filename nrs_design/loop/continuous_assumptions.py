@@ -14,7 +14,6 @@ from nrs_design.loop.assumptions import (
     assume_command_unit,
     assume_contacts,
     assume_kept_contact,
-    assume_memory,
     assume_parts,
     assume_rules,
     assume_tissue,
@@ -38,7 +37,8 @@ def assume_loop(
     yield from _assume_inputs(loop, losable=losable)
     yield UNCOUPLED
     yield from _assume_contact(loop)
-    yield from assume_memory(loop.environments)
+    for e in loop.environments:
+        yield from e.law.assumptions(e.name, alone=len(loop.environments) == 1)
     yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
     # If contact may be lost, each statement says whether it covers the loss.
     if free:

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
@@ -34,8 +34,12 @@ from nrs_design.controllers.laws import (
 )
 from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.loop.joint import Joint
+from nrs_design.loop.calendar import Calendar, CommandTiming, Turn
+from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
+from nrs_design.loop.parameter_box import Joint
+from nrs_design.loop.program import SampledProgram
+from nrs_design.loop.sampled import NOTHING, Contact, Rows, SampledLoop
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
@@ -48,13 +52,8 @@ from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 
-if TYPE_CHECKING:
-    from nrs_design.loop.calendar import Turn
-    from nrs_design.loop.sampled import Contact, Rows, SampledLoop
-
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
-NOTHING: Contact = (ZERO, ZERO)
 # Decay and driving rate of the memory of a contact; None without memory.
 Memory: TypeAlias = tuple[Fraction, Fraction] | None
 REMEMBERED = "damper deflection [rad]"
@@ -146,19 +145,14 @@ class ContinuousAxis(AbstractAxis):
 
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         """Return the loop of a controller."""
-        return CutLoop(
-            *(
-                characteristic(self.rows(law, contact, place, cut))
-                for cut in (_OPENED, _CLOSED, _FREE)
-            )
-        )
+        cuts = _OPENED, _CLOSED, _FREE
+        return CutLoop(*(characteristic(self.rows(law, contact, place, cut)) for cut in cuts))
 
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
         """Return the mode without the force in the law, and the one that is proved."""
-        opened, closed = (self.rows(law, contact, place, cut) for cut in (_OPENED, _CLOSED))
-        return opened, closed
+        return self.rows(law, contact, place, _OPENED), self.rows(law, contact, place)
 
     def rows(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
@@ -205,16 +199,16 @@ class ProcessorAxis(AbstractAxis):
 
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         """Return the loop of a controller."""
-        return self._cut(self._held(law), contact, place)
+        held = law.discretize(self.sampling.outer, self.sampling.admittance)
+        return self._cut(held, contact, place)
 
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
         """Return the step without the force in the law, and the one that is proved."""
-        return self._modes(self._held(law), contact, place)
-
-    def _held(self, law: CompliantLaw) -> DiscreteLaw:
-        return law.discretize(self.sampling.outer, self.sampling.admittance)
+        held = law.discretize(self.sampling.outer, self.sampling.admittance)
+        opened, closed, _ = _touches(contact)
+        return self.step(self._opened(held), place, *opened), self.step(held, place, *closed)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
@@ -228,20 +222,11 @@ class ProcessorAxis(AbstractAxis):
         return first, second, third
 
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        # One place is asked for, and the hash of all takes as long as the loop.
-        alone, laws = replace(self, places=()), (self._opened(law), law, law)
-        pairs = zip(laws, _touches(contact), strict=True)
-        loops = [_of_step(alone, own, place, *touch) for own, touch in pairs]
+        pairs = zip((self._opened(law), law, law), _touches(contact), strict=True)
+        loops = [characteristic(self.step(own, place, *touch)) for own, touch in pairs]
         while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
             loops = [p[:-1] for p in loops]
         return CutLoop(*(on_the_axis(p, self.period) for p in loops))
-
-    def _modes(
-        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
-    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Close the loop over a period of the force."""
-        opened, closed, _ = _touches(contact)
-        return self.step(self._opened(law), place, *opened), self.step(law, place, *closed)
 
     def _opened(self, law: DiscreteLaw) -> DiscreteLaw:
         """Return a law where it is cut: a spring that draws the measured position is cut as well.
@@ -265,9 +250,9 @@ class ProcessorAxis(AbstractAxis):
         `sensed` is what the force sample shows, `carried` what slows a motor with a load, `memory`
         the rates of what is touched.
         """
-        from nrs_design.loop.calendar import Turn
-
-        loop, flow = _loop(self, law, place, carried if self.drive.loaded else NOTHING, memory)
+        # One place is asked for, and the hash of all takes as long as the loop.
+        alone, carried = replace(self, places=()), carried if self.drive.loaded else NOTHING
+        loop, flow = _loop(alone, law, place, carried, memory)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
@@ -282,36 +267,16 @@ class ProcessorAxis(AbstractAxis):
 
 def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
     """Return sensed and carried contact and its memory: opened, closed, without force."""
-    memory = contact.memory_rates
-    touched = contact.load
+    touched, memory = contact.load, contact.memory_rates
     return (NOTHING, touched, memory), (touched, touched, memory), (NOTHING, NOTHING, memory)
 
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
 @lru_cache(maxsize=_KEPT)
-def _of_step(
-    axis: ProcessorAxis,
-    law: DiscreteLaw,
-    place: Place,
-    sensed: Contact,
-    carried: Contact,
-    memory: Memory,
-) -> Polynomial:
-    return characteristic(axis.step(law, place, sensed, carried, memory))
-
-
-@lru_cache(maxsize=_KEPT)
 def _loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
 ) -> tuple[SampledLoop, Rows]:
     """Return the loop of a law, and the flow of a period at one point."""
-    # Not loaded for a design in continuous time.
-    from nrs_design.loop.calendar import Calendar
-    from nrs_design.loop.command_timing import CommandTiming
-    from nrs_design.loop.flow import HeldDrive
-    from nrs_design.loop.program import SampledProgram
-    from nrs_design.loop.sampled import SampledLoop
-
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
     D = axis.motion.over(axis.sampling.period.exact)
@@ -386,10 +351,8 @@ def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
 
 
 def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
-    opened, closed, free = (
-        tuple(factor * c for c in p) for p in (loop.opened, loop.closed, loop.free)
-    )
-    return CutLoop(opened, closed, free)
+    each = loop.opened, loop.closed, loop.free
+    return CutLoop(*(tuple(factor * c for c in polynomial) for polynomial in each))
 
 
 def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:

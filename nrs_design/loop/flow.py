@@ -19,7 +19,7 @@ from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING
 
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import CommandTiming
 from nrs_design.loop.entries import Entries, exact_rows, highest, lowest, too_long
 from nrs_design.loop.hull import (
     EntryCurve,
@@ -34,8 +34,8 @@ from nrs_design.loop.hull import (
     simplex,
     ties,
 )
+from nrs_design.loop.located import labelled_ends
 from nrs_design.loop.sampled import DELTA, Rows
-from nrs_design.loop.spot import labelled_ends
 from nrs_design.models.drive import GAIN, LOAD, MEMORY, Drive, Takes
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, precision

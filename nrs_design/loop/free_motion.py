@@ -1,17 +1,22 @@
-"""Contact loss in continuous time, and the modes of free motion."""
+"""Contact loss, and the modes of free motion in continuous time."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from enum import Enum
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.constant_parameters import ConstantParameter
-from nrs_design.loop.located import AbstractLocatedMode, MatrixMode
+from nrs_design.loop.located import (
+    AbstractLocatedMode,
+    ConstantParameter,
+    MatrixMode,
+    Spot,
+    spot_of,
+)
 from nrs_design.loop.modes import Rows, velocity_mode
 from nrs_design.loop.shared_state import SharedState
-from nrs_design.loop.spot import Spot, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.linear_form import LinearForm, coordinates
@@ -22,6 +27,51 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.interaction_parts import FREE
+
+
+class Loss(Enum):
+    """Place of contact loss, by the id of its assumption."""
+
+    NEVER = "contact-kept.never"
+    NOT_MODELLED = "contact-kept.not-modelled"
+    # Each law states its own assumption.
+    BY_LAWS = "contact-kept.law"
+    # At the surface; each statement says whether it covers the loss.
+    SURFACE = "contact-lost.surface"
+    ANYWHERE = "contact-lost.anywhere"
+    UNDER_FORCE_CONTROL = "contact-lost.force-control"
+
+    @property
+    def anywhere(self) -> bool:
+        """Whether contact is lost at any deflection, so that free motion is one of the modes."""
+        return self in (Loss.ANYWHERE, Loss.UNDER_FORCE_CONTROL)
+
+    @classmethod
+    def of(
+        cls,
+        contact: str | None,
+        environments: Iterable[Environment],
+        design: ControllerDesign,
+        *,
+        slowed: bool,
+    ) -> Loss:
+        """Tell how contact is lost, by the key `contact` of a spec.
+
+        With springs everywhere free motion is a mode like others. A motor that is `slowed` by what
+        it touches would lose it within a period, too, which has to be asked for.
+        """
+        if any(c.law.commands == "position" for c in design.controllers):
+            # Force control has the same equilibrium in free motion: the commanded position.
+            return cls.UNDER_FORCE_CONTROL if contact == "losable" else cls.BY_LAWS
+        sprung = {c.law.spring != 0 for c in design.controllers}
+        if contact == "kept" or ((slowed or True in sprung) and contact is None):
+            return cls.NEVER
+        if any(
+            e.preloaded or e.law.remembers or (e.parts and not e.each_losable) for e in environments
+        ):
+            return cls.NOT_MODELLED
+        return cls.ANYWHERE if sprung == {True} else cls.SURFACE
+
 
 # An environment without force.
 NOTHING = KelvinVoigt(Fraction(0), Fraction(0))

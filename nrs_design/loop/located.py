@@ -1,15 +1,92 @@
-"""Modes with the corner of the ranges at which they stand."""
+"""Modes, and where in the ranges of a loop they stand."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import NamedTuple
 
-from nrs_design.loop.constant_parameters import Corner
-from nrs_design.loop.spot import Spot
+from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import FixedParameter
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantParameter:
+    """One parameter that does not change while the robot runs."""
+
+    said: FixedParameter  # Its name and range
+    # Labels of the low and the high end in names of modes, such as ``k-min``.
+    labels: tuple[str, str]
+    contact: str | None = None  # Contact with this parameter; None if it occurs in all modes
+
+    @property
+    def symbol(self) -> str:
+        """Symbol of the parameter in labels."""
+        return self.labels[0].rpartition("-")[0]
+
+
+class Label(NamedTuple):
+    """At which end of a range a mode is, as its name says."""
+
+    text: str
+    attained: bool  # Whether a loop of the spec is at that end, rather than near it
+    constant: bool  # Whether the number does not change
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """Where in its ranges something is."""
+
+    labels: tuple[Label, ...] = ()
+    # At which end each constant number is, low before high, by its name; or which curve point.
+    corner: tuple[tuple[str, int], ...] = ()
+
+    @classmethod
+    def named(cls, *names: str) -> Spot:
+        """Return where what has such names is, whatever its ranges are."""
+        return cls(tuple(Label(name, attained=True, constant=False) for name in names))
+
+    def __add__(self, other: Spot) -> Spot:
+        """Return where two things are that have no range in common."""
+        return Spot(self.labels + other.labels, self.corner + other.corner)
+
+
+def labelled_ends(
+    ranges: Mapping[str, Interval],
+) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
+    """Yield the labels and the values at the ends of ranges, the last one turning fastest."""
+    for ends in product(*(interval.ends for interval in ranges.values())):
+        named = [(symbol, *end) for symbol, end in zip(ranges, ends, strict=True)]
+        labels = tuple(f"{symbol}-{end}" for symbol, end, _ in named if end)
+        yield labels, {symbol: value for symbol, _, value in named}
+
+
+def spot_of(
+    texts: Collection[str],
+    attained: Collection[str],
+    constants: Iterable[ConstantParameter],
+    curve: tuple[str, int] | None = None,
+) -> Spot:
+    """Return where labels say that something is; `attained` are symbols with real ends.
+
+    On the curve of a constant number, its corners are the points around the curve.
+    """
+    corner, fixed = [], set()
+    for constant in constants:
+        if curve is not None and curve[0] == constant.symbol:
+            corner.append((constant.said.name, curve[1]))
+            fixed.add(f"flow-{curve[1]}")
+        for end, text in enumerate(constant.labels):
+            if text in texts:
+                corner.append((constant.said.name, end))
+                fixed.add(text)
+    labels = (Label(t, t.rpartition("-")[0] in attained, t in fixed) for t in texts)
+    return Spot(tuple(labels), tuple(corner))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,15 +114,9 @@ class AbstractLocatedMode(ABC):
         return Mode(self.name, self.A)
 
     @property
-    def point(self) -> tuple[str, ...]:
-        """Key of the set of corners that enclose a loop together."""
-        return tuple(label.text for label in self.spot.labels if label.attained)
-
-    @property
-    def corner(self) -> Corner:
-        """Ends of the constant parameters, and the rest of the name."""
-        varying = (label.text for label in self.spot.labels if not label.constant)
-        return Corner(self.name, tuple(varying), dict(self.spot.corner))
+    def varying(self) -> tuple[str, ...]:
+        """Parts of its name without the ends of constant parameters."""
+        return tuple(label.text for label in self.spot.labels if not label.constant)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,5 +143,6 @@ def enclosures_of(items: Iterable[AbstractLocatedMode]) -> Iterator[tuple[str, .
     """Yield the modes that enclose one map or motion together."""
     found: dict[tuple[str, ...], list[str]] = {}
     for item in items:
-        found.setdefault(item.point, []).append(item.name)
+        attained = tuple(label.text for label in item.spot.labels if label.attained)
+        found.setdefault(attained, []).append(item.name)
     yield from (tuple(names) for names in found.values() if len(names) > 1)

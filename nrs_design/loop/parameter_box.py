@@ -11,11 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product, starmap
+from itertools import product
 
+from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import InternalError
-from nrs_design.loop.spot import labelled_ends
+from nrs_design.loop.located import labelled_ends
+from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import JointMotionLoop
+from nrs_design.models.plant import Plant
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]
@@ -69,19 +73,19 @@ class Box:
         most two in each coordinate this decides it.
         """
         known = dict(corners)
-        # Rows that are the same objects are compared once; kept here, no other gets their ids.
-        compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
         # Neighbors are in the middle on one axis less, so they come first.
         for at, values in sorted(self._grid(between=True), key=lambda item: item[0].count(MIDDLE)):
             if MIDDLE not in at:
                 continue
             i = at.index(MIDDLE)
             low, high = (known[*at[:i], end, *at[i + 1 :]] for end in ("min", "max"))
-            found = known[at] = rows_at(values)
-            triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
-            if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
-                raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
-            compared |= triples
+            known[at] = rows_at(values)
+            for rows in zip(known[at], low, high, strict=True):
+                # Most rows do not change at all along an axis.
+                row, x, y = map(tuple, rows)
+                if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
+                    said = f"the matrix of mode {name} is not affine in each parameter"
+                    raise InternalError(said)
 
     def _grid(self, *, between: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
         """Yield labels and values at the ends of all ranges, and halfway between two."""
@@ -94,15 +98,34 @@ class Box:
             yield tuple(label for label, _ in at), dict(values)
 
 
-def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:
-    """Tell whether a row is the mean of two; most rows do not change at all along an axis."""
-    return row == a == b or all(starmap(_is_middle, zip(row, a, b, strict=True)))
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """The motion loop in its physical state, wherever gain and time constant of the motor are."""
 
+    motion: ProportionalDerivative  # The PD gains that ship
+    ranges: ActuatorRanges  # Where the motor may be
+    load_inertia: Fraction | None  # The J of `nrs_design.models.motion_loop.JointMotionLoop`
 
-def _is_middle(entry: Fraction, x: Fraction, y: Fraction) -> bool:
-    """Tell whether an entry is halfway between two, without reducing fractions on the way."""
-    # Most entries are one zero.
-    if entry is x is y:
-        return True
-    (n, d), (p, q), (r, s) = (number.as_integer_ratio() for number in (entry, x, y))
-    return 2 * n * q * s == (p * s + r * q) * d
+    @classmethod
+    def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
+        """Return the joint of a plant, or None where its motor is a point and carries no load."""
+        ranges = plant.actuator_ranges
+        if ranges.fixed and plant.load_inertia is None:
+            return None
+        return cls(motion, ranges, plant.load_inertia)
+
+    @property
+    def box(self) -> Box:
+        """The box in which the loop is affine in the gain, and in one over the time constant."""
+        return Box({"Km": self.ranges.gain, "tau": self.ranges.time_constant}, frozenset({"tau"}))
+
+    @property
+    def nominal(self) -> JointMotionLoop:
+        """The loop that the design uses."""
+        motor = self.ranges.nominal
+        return self.at({"Km": motor.gain, "tau": motor.time_constant})
+
+    def at(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
+        """Return the loop at the values of ``Km`` and ``tau``."""
+        gains = self.motion.Kp, self.motion.Kd
+        return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)

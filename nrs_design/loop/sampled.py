@@ -8,7 +8,7 @@ that is a position counts from the deflection, as the reference of impedance con
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
@@ -57,8 +57,6 @@ class Sample:
     sent: Sequence[LinearForm]
     sizes: tuple[LinearForm, ...]
     command: LinearForm
-    # Rows that corners of a flow share, as one object.
-    moved: dict[tuple[str, tuple[Fraction, ...]], LinearForm] = field(default_factory=dict)
 
     def does(self, other: Sample) -> bool:
         """Tell whether another sample does the same."""
@@ -159,14 +157,10 @@ class SampledLoop:
             *(w.sum((ONE, sent[age]), (-ONE, sent[age + 1])) for age in within),
         ]
 
-        def moved(name: str) -> LinearForm:
-            key = name, rows[name]
-            if key not in sample.moved:
-                own = [(ONE, w[DELTA])] if name == DELTA else []
-                sample.moved[key] = w.sum(*own, *zip(rows[name], columns, strict=True))
-            return sample.moved[key]
-
-        after = {**sample.after, **{name: moved(name) for name in (*self.moving, DELTA)}}
+        after = dict(sample.after)
+        for name in (*self.moving, DELTA):
+            own = [(ONE, w[DELTA])] if name == DELTA else []
+            after[name] = w.sum(*own, *zip(rows[name], columns, strict=True))
         delta = after[DELTA]
         moves = (
             w.sum((ONE, after[s]), (-ONE, delta)) if s in self.from_deflection else after[s]

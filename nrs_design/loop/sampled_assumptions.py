@@ -15,13 +15,12 @@ from nrs_design.loop.assumptions import (
     assume_command_unit,
     assume_contacts,
     assume_kept_contact,
-    assume_memory,
     assume_parts,
     assume_rules,
     assume_tissue,
 )
-from nrs_design.loop.command_timing import CommandTiming
-from nrs_design.loop.loss import Loss
+from nrs_design.loop.calendar import CommandTiming
+from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.models.contact.environment import Environment
@@ -84,7 +83,8 @@ def assume_sampled_loop(
     yield UNCOUPLED
     yield from assume_contacts(design)
     yield from assume_tissue(environments, axis)
-    yield from assume_memory(environments)
+    for e in environments:
+        yield from e.law.assumptions(e.name, alone=len(environments) == 1)
     # For contact loss at the surface, each statement says whether it covers it.
     if loss is Loss.BY_LAWS:
         yield from assume_kept_contact(design, alone=program.idle is None)
@@ -141,7 +141,8 @@ def _assume_motor(
     """Return the model of the motor, or of the robot."""
     ranges, timing = plant.actuator_ranges, loop.calendar.timing
     motor = ranges.assumed(axis)
-    motor["moving"] = _at_samples(motor["moving"])
+    # Parameters change at samples only.
+    motor["moving"] = motor["moving"] and f"{motor['moving']}-sampled"
     if plant.slowed:
         return assume("motor.loaded", **motor)
     if plant.drive is not None:
@@ -154,14 +155,10 @@ def _assume_motor(
     return assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
 
 
-def _at_samples(moves: str) -> str:
-    """Return the key of parameters that change at samples only."""
-    return moves and f"{moves}-sampled"
-
-
 def _assume_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
     """Return the model of a robot with an interface in place of a motor."""
-    moves = _at_samples(moving(drive.ranges.values()))
+    moves = moving(drive.ranges.values())
+    moves = moves and f"{moves}-sampled"
     if drive.takes is Takes.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
         B = f"{drive.ranges['B'].text} {axis.unit('N*m*s/rad')}"

@@ -9,11 +9,15 @@ from itertools import product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
-from nrs_design.loop.constant_parameters import ConstantParameter
 from nrs_design.loop.flow import AGAIN, HeldDrive
-from nrs_design.loop.located import AbstractLocatedMode
+from nrs_design.loop.located import (
+    AbstractLocatedMode,
+    ConstantParameter,
+    Spot,
+    labelled_ends,
+    spot_of,
+)
 from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
-from nrs_design.loop.spot import Spot, labelled_ends, spot_of
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval
@@ -44,13 +48,8 @@ class SampledMode(AbstractLocatedMode):
         return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TouchedDrive:
-    """Force samples and flows of a drive in a contact."""
-
-    spot: Spot  # Corner of drive and load, if the modes stand at corners
-    seen: Sequence[tuple[Spot, Contact]]
-    flows: Sequence[tuple[Spot, Rows]]
+# Where drive and load are, if modes stand at corners; force samples there; and flows.
+Touched = tuple[Spot, Sequence[tuple[Spot, Contact]], Sequence[tuple[Spot, Rows]]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,29 +120,27 @@ class Modes:
         head = Spot.named(*names)
         # A force sample matters to a law without force feedback only if it is delayed.
         sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
-        for touched in self._touching(e, contacts, sampled=sampled):
-            for turn, age, said in self._samples(law, turns, touched):
-                where = head + touched.spot + said
-                for spot, contact in touched.seen:
+        for spot, seen, flows in self._touching(e, contacts, sampled=sampled):
+            for turn, age, said in self._samples(law, turns, seen[0][1]):
+                for where, contact in seen:
                     sample = self.loop.sample(law, age, contact, turn)
-                    for at, rows in touched.flows:
+                    for at, rows in flows:
                         yield SampledMode(
                             group,
-                            where + spot + at,
+                            head + spot + said + where + at,
                             touches if e is None else e.name,
                             turn is Turn.BOTH,
                             self.loop.period(sample, rows),
                         )
 
     def _samples(
-        self, law: DiscreteLaw, turns: Sequence[Turn], touched: TouchedDrive
+        self, law: DiscreteLaw, turns: Sequence[Turn], contact: Contact
     ) -> Iterator[tuple[Turn, int, Spot]]:
         """Yield what is computed with a force sample of what age, and how that is said."""
         first, last = self.loop.calendar.ages
         if not turns[0].has_law:
             yield from ((turn, 0, NOWHERE) for turn in turns)
             return
-        _, contact = touched.seen[0]
         # A law that takes no force does the same at every age of its sample.
         if self.loop.sample(law, first, contact).does(self.loop.sample(law, last, contact)):
             last = first
@@ -154,13 +151,29 @@ class Modes:
 
     def _touching(
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
-    ) -> Iterator[TouchedDrive]:
+    ) -> Iterator[Touched]:
         """Yield samples and flows in a contact, for every drive."""
+        constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
+        real = () if loaded or (e is not None and e.depends) else LOAD
         for labels, held in self.drives or (((), self.held),):
             for load, own in self._loads(e, contacts):
                 texts = (*load, *labels)
-                spot = spot_of(texts, [t.rpartition("-")[0] for t in texts], self._constants(e))
-                yield self._with(spot, held, own, e, sampled=sampled)
+                # What acts on a drive is told from what is sampled, if a law takes that.
+                ends = labelled_ends(own if sampled and (forced or not loaded) else {})
+                seen = [
+                    (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
+                    for said, at in ends
+                ]
+                # Not by what is touched: a flow names constants of a contact only where there is
+                # just one.
+                key = held, tuple(own.items()) if loaded else ()
+                if key not in self._known:
+                    self._known[key] = tuple(
+                        (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
+                        for point in held.flow(own, AGAIN if forced else LOAD)
+                    )
+                ends_of = [text.rpartition("-")[0] for text in texts]
+                yield spot_of(texts, ends_of, constants), seen, self._known[key]
 
     def _loads(
         self, e: Environment | None, contacts: Sequence[Environment]
@@ -175,32 +188,6 @@ class Modes:
         else:
             for labels, values in labelled_ends(own):
                 yield labels, {symbol: Interval.point(value) for symbol, value in values.items()}
-
-    def _with(
-        self,
-        spot: Spot,
-        held: HeldDrive,
-        own: Mapping[str, Interval],
-        e: Environment | None,
-        *,
-        sampled: bool,
-    ) -> TouchedDrive:
-        constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
-        # What acts on a drive is told from what is sampled, if a law takes that.
-        ends = labelled_ends(own if sampled and (forced or not loaded) else {})
-        real = () if loaded or (e is not None and e.depends) else LOAD
-        seen = [
-            (spot_of(texts, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
-            for texts, at in ends
-        ]
-        # Not by what is touched: a flow names constants of a contact only where there is just one.
-        key = held, tuple(own.items()) if loaded else ()
-        if key not in self._known:
-            self._known[key] = tuple(
-                (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
-                for point in held.flow(own, AGAIN if forced else LOAD)
-            )
-        return TouchedDrive(spot, seen, self._known[key])
 
     def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
         """Return the constant parameters of the drive and of the contact."""

@@ -24,7 +24,6 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.joint import Joint
 from nrs_design.loop.modes import (
     Rows,
     lead,
@@ -33,7 +32,7 @@ from nrs_design.loop.modes import (
     with_idle,
     with_last,
 )
-from nrs_design.loop.parameter_box import Box
+from nrs_design.loop.parameter_box import Box, Joint
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import (
     JointMotionLoop,

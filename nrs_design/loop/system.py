@@ -5,29 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
+from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.calendar import Calendar, Turn, turns_of
-from nrs_design.loop.command_timing import timing_of
-from nrs_design.loop.constant_parameters import ConstantParameter, Corner
-from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
+from nrs_design.loop.calendar import Calendar, CommandTiming, Turn, turns_of
+from nrs_design.loop.constraints import (
+    assemble_switching,
+    clock_of,
+    count_stays,
+    leaving_impedance,
+    zeroing,
+)
 from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.free_motion import (
+    Loss,
     could_pull,
     flights_of,
     force_rows,
     lost_on_surface,
     outputs_of,
 )
-from nrs_design.loop.located import enclosures_of, grouped
-from nrs_design.loop.loss import Loss
-from nrs_design.loop.misses import clock_of
-from nrs_design.loop.motor_command import motor_command
+from nrs_design.loop.located import ConstantParameter, enclosures_of, grouped
 from nrs_design.loop.program import (
     FORCE_ERROR,
     INPUTS,
@@ -35,15 +39,16 @@ from nrs_design.loop.program import (
     ROUNDED_REFERENCE,
     SampledProgram,
 )
-from nrs_design.loop.sampled import SampledLoop
+from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes, SampledMode
 from nrs_design.loop.saturation import with_sampled_saturation
-from nrs_design.loop.stays import count_stays
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Channel, Rounding
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
@@ -52,6 +57,7 @@ from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
+from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.sampling import SamplingSpec
 
 
@@ -63,8 +69,8 @@ def close_sampled_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     points: bool = False,
-) -> tuple[SwitchedSystem, tuple[Corner, ...]]:
-    """Return the system of a sampled loop, and at which ends of constant numbers its modes are.
+) -> tuple[SwitchedSystem, Sequence[SampledMode]]:
+    """Return the system of a sampled loop, and its modes.
 
     `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
     """
@@ -104,8 +110,10 @@ def close_sampled_loop(
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
-    rules = count_stays(conditions.switching, grouped(items), period)
-    driven = motor_command(conditions.largest_command, conditions.command, loop, channels)
+    clock, rest, counted = count_stays(conditions.switching, grouped(items), period)
+    driven, unlimited = _motor_command(
+        conditions.largest_command, conditions.command, loop, channels
+    )
     system = SwitchedSystem(
         name=conditions.name,
         time=Time.DISCRETE,
@@ -113,26 +121,24 @@ def close_sampled_loop(
         modes=tuple(item.mode for item in modes),
         assumptions=(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
-            *(() if driven is None else (driven.assumption,)),
-            *rules.assumptions,
+            *unlimited,
+            *counted,
         ),
-        switching=assemble_switching(
-            rules.rest, grouped(modes), _resets(conditions.idle, loop, design)
-        ),
+        switching=assemble_switching(rest, grouped(modes), _resets(conditions.idle, loop, design)),
         contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
         if free
         else None,
         sample_time=sampling.longest_step,
         channels=channels,
-        outputs=(*outputs, *(() if driven is None else (driven.output,))),
+        outputs=(*outputs, *driven),
         roundings=tuple(_roundings(loop, channels, items)),
-        clock=_clock(sampling, items) or rules.clock,
+        clock=_clock(sampling, items) or clock,
         flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None:
         system = with_sampled_saturation(system, conditions, loop, items, environments)
-    return system, tuple(item.corner for item in modes)
+    return system, modes
 
 
 def _wired(
@@ -143,7 +149,8 @@ def _wired(
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
     """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
-    calendar = Calendar(timing_of(sampling, conditions.command_delay), turns=turns_of(sampling))
+    timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
+    calendar = Calendar(timing, turns=turns_of(sampling))
     program = _program(conditions.idle, sampling, design, laws)
     loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
     if not loop.takes_force:
@@ -242,15 +249,60 @@ def _roundings(
     n, named = len(loop.states), {channel.name for channel in channels}
     kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
     for j, name in enumerate(loop.program.roundings):
-        rows = _rows_over(kept, (item.period.sizes[j] for item in items))
+        sizes = (item.period.sizes[j] for item in items)
+        rows = (RationalMatrix.from_rows([[size[i] for i in kept]]) for size in sizes)
         columns = (item.column(len(INPUTS) + j) for item in items)
         yield Rounding(name, tuple(columns), tuple(rows))
 
 
-def _rows_over(kept: Sequence[int], forms: Iterable[LinearForm]) -> Iterator[RationalMatrix]:
-    """Yield some entries of forms as rows; where corners share a form, it is one row."""
-    made: dict[int, RationalMatrix] = {}
-    for form in forms:
-        if id(form) not in made:
-            made[id(form)] = RationalMatrix.from_rows([[form[i] for i in kept]])
-        yield made[id(form)]
+def _motor_command(
+    largest: Fraction | None,
+    unit: str,
+    loop: SampledLoop,
+    channels: Sequence[Channel],
+) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
+    """Return the command under disturbances, roundings included, and what it leaves out.
+
+    While it stays below the limit of the driver, the driver does nothing but what the model says:
+    so a bound from rest, below the limit, excludes saturation under the same disturbances.
+
+    Impedance controllers change the reference after the command, so it is one and the same form of
+    the states in all modes, in contact and free. A rounding is at most a share of other forms, so
+    the command is a mixture of rows in which every share is added or subtracted. Nothing without
+    disturbances or a limit, or where it is not of this form.
+    """
+    moving = all(law.law.commands == "velocity" for law in loop.program.laws)
+    if largest is None or not channels or not moving or loop.calendar.holds:
+        return (), ()
+    sample = loop.sample(loop.program.laws[0], loop.calendar.ages[0], NOTHING)
+    form, n = sample.command, len(loop.states)
+    end = n + len(INPUTS)
+    bounds = {channel.name: channel.bound for channel in channels}
+    shares = list(zip(form[end:], sample.sizes, strict=True))
+    # What the disturbances of a sample add to its command at once, at most.
+    at_once = _largest(form[n:end], bounds) + sum(
+        (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
+    )
+    rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
+    rows = tuple(
+        RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
+        for signed in product(*([row, [-v for v in row]] for row in rounded))
+    )
+    limit = float32_not_above(largest)
+    left = limit - at_once
+    name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
+    output = Output(name, unit, rows, left if left > 0 else None)
+    assumption = Assumption.create(
+        "not-quantized.command",
+        limit=rounded_down(limit, unit),
+        less=at_once > 0 and "errors",
+        at_once=at_once > 0 and rounded_up(at_once, unit),
+        output=name,
+    )
+    return (output,), (assumption,)
+
+
+def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
+    """Return the largest value of a form of the inputs; inputs without a bound are zero."""
+    sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
+    return sum(sizes, Fraction(0))

@@ -43,13 +43,6 @@ class Interval:
         low, high = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
         return Interval(self.nominal, low, high, self.varies)
 
-    def within(self, ends: tuple[Fraction, Fraction] | None) -> Interval:
-        """Return a part of the interval, with a nominal value in it; None for all of it."""
-        if ends is None:
-            return self
-        low, high = ends
-        return Interval(min(max(self.nominal, low), high), low, high, self.varies)
-
     @property
     def text(self) -> str:
         """Its one value, or its ends in brackets, exactly."""

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict, common_quadratic_of
 from nrs_design.errors import AssemblyError, DesignError
-from nrs_design.models.cut import RangeCut
 from nrs_design.pipeline.design import Designed, for_goal, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
@@ -114,13 +112,11 @@ def certify_design(
     except (DesignError, AssemblyError):
         pass  # What is not modelled is not proved.
     found = prover.certified(designed, method)
-    points, cuts = "", tuple[RangeCut, ...]()
+    points = ""
     if found.is_open:
         points, found = prover.at_points(designed, found)
-    if found.is_open and method is Method.AUTO:
-        cuts, found = prover.in_cases(designed, found)
     found = replace(found, attempts=(*older, *found.attempts))
-    return Result(loaded, designed, found, certificate_of(loaded, designed, found, points, cuts))
+    return Result(loaded, designed, found, certificate_of(loaded, designed, found, points))
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,35 +156,6 @@ class _Prover:
                 return points, replace(found, attempts=known.attempts)
         return "", known
 
-    def in_cases(
-        self, designed: Designed | None, known: Certification
-    ) -> tuple[tuple[RangeCut, ...], Certification]:
-        """Look for a proof of each part of the ranges of constants, where they have none together.
-
-        Under arbitrary switching; a constant is in one part for ever.
-        """
-        from nrs_design.loop.assemble import assemble
-        from nrs_design.pipeline.cases import CASES, find_cases
-        from nrs_design.search.certify import certify_cases
-
-        switching = known.system.switching
-        if designed is None or not switching.fixed_parameters or switching.resets:
-            return (), known
-        self.progress(CASES)
-        with placed(self.loaded):
-            start = perf_counter()
-            found = find_cases(designed, switching.fixed_parameters, self.limits)
-            attempt = Attempt(CASES, found.outcome, perf_counter() - start, found.work)
-            attempts = (*known.attempts, attempt)
-            if not found.cuts:
-                return (), replace(known, attempts=attempts)
-            parts, proofs = zip(*found.proved, strict=True)
-            cuts = found.cuts
-            system = assemble(
-                designed.spec, designed.plant, designed.design, cuts=cuts, parts=parts
-            )
-        return cuts, certify_cases(system, proofs, attempts)
-
 
 def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:
     """Return what a proof for an older force says of a design; None where a goal is not met."""
@@ -219,7 +186,6 @@ def certificate_of(
     designed: Designed | None,
     certification: Certification,
     points: str = "",
-    cuts: tuple[RangeCut, ...] = (),
 ) -> Certificate | None:
     """Return what may be written to a file; None if nothing was shown."""
     if not certification.statements:
@@ -233,7 +199,6 @@ def certificate_of(
         statements=certification.statements,
         version=__version__,
         points=points,
-        cuts=cuts,
     )
 
 

@@ -163,11 +163,9 @@ def for_goal(designed: Designed) -> Designed | None:
 
 def declaring(designed: Designed, age: int) -> Designed:
     """Return a design whose spec declares ages of the force up to this one, in samples."""
-    from nrs_design.certificates.ages import declaring_ages
-
     assert designed.spec.sampling is not None, "a delay is of samples"
     least = designed.spec.sampling.delay[0]
-    return _with_spec(designed, declaring_ages(designed.spec, (min(least, age), age)))
+    return _with_spec(designed, designed.spec.declaring_ages((min(least, age), age)))
 
 
 def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:

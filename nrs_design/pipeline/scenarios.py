@@ -306,7 +306,7 @@ def _commanded(designed: Designed) -> SwitchedSystem:
         return assemble_spec(designed.loaded, replace(designed, spec=spec))
     # In continuous time a run may be on tissue for which no bound is stated.
     from nrs_design.loop.assemble import state_of
-    from nrs_design.loop.commanded import with_command
+    from nrs_design.loop.close_loop import with_command
     from nrs_design.spec.build_plant import build_conditions
 
     conditions = build_conditions(spec)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import partial
 
 from nrs_design.certificates.certificate import (
@@ -17,7 +15,7 @@ from nrs_design.certificates.goals import rate_per_second
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph, Shows
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
@@ -121,41 +119,6 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     if not agrees(system, evidence):
         raise InternalError(DISAGREE)
     return refuted_in(system, (evidence,)) or ""
-
-
-def prove_together(
-    system: SwitchedSystem, allowance: Allowance, wanted: Fraction | None = None
-) -> tuple[FormsOnGraph | None, str]:
-    """Search for forms that all modes share, under arbitrary switching; say how that ended.
-
-    With a wanted decay in 1/s, forms that show less are none.
-    """
-    from nrs_design.search.counted_stays import search_stays
-    from nrs_design.search.graphs import search_periodic_quadratic, search_together
-
-    with floats_in_silence():
-        family = Family.of(system, allowance, optimize_rate=wanted is not None)
-    search = search_together
-    if (clock := system.clock) is not None:
-        search = search_stays if clock.counts_stays else search_periodic_quadratic
-    found, outcome = take_candidate(partial(search, family), system, allowance)
-    shown = None if found is None else rate_per_second(found.rate, system)
-    if wanted is not None and shown is not None and shown < wanted:
-        return None, f"{outcome}, with less decay than the goal"
-    return found, outcome
-
-
-def certify_cases(
-    system: SwitchedSystem, parts: Sequence[FormsOnGraph], attempts: tuple[Attempt, ...]
-) -> Certification:
-    """Conclude that a system is stable of which every case has been shown to be."""
-    from nrs_design.search.cases import joined
-
-    evidence = joined(system, parts)
-    check_again((evidence,), system)
-    if not agrees(system, evidence):
-        raise InternalError(DISAGREE)
-    return replace(_conclude(system, "cases", (evidence,), attempts), rate_limit=rate_limit(system))
 
 
 def _allowance(limits: Limits) -> Allowance:

@@ -154,7 +154,7 @@ _TABLE: tuple[tuple[Any, ...], ...] = (
     ),
     ("its law counts the error from sample to sample", has.TORQUES, has.CONTINUOUS),
     ("what is on its way for a time is no state there", has.TIMED, has.CONTINUOUS),
-    ("it is about a pivot", has.SLIDING, (has.MODE_LOGIC, has.TOOL)),
+    ("it is about a pivot", has.SLIDING, has.MODE_LOGIC),
     (
         "the hand then commands a position, and nothing is said of its size",
         has.COMMAND,

@@ -48,7 +48,6 @@ _SHOWN = (
     kinds.FORCE_GAIN,
     kinds.TORQUE,
     kinds.TORQUE_RATE,
-    kinds.FORCE,
     kinds.LINEAR_STIFFNESS,
 )
 

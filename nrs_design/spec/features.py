@@ -346,4 +346,3 @@ LIMITED = _given(
     "a largest command of a motor", "limits.command", "leave command out of the limits"
 )
 MODE_LOGIC = _given("mode_logic", "mode_logic", "leave mode_logic out")
-TOOL = _given("a tool on the sensor", "sensor.tool", "leave tool out")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator
 
@@ -310,6 +310,12 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         found = {(name, "dead_time"): drive.dead_time for name, drive in self.drives.items()}
         found |= {("sampling", "latency"): None if self.sampling is None else self.sampling.latency}
         return {at: times for at, times in found.items() if times is not None}
+
+    def declaring_ages(self, ages: tuple[int, int]) -> Self:
+        """Return the spec as if it declared other ages of the force, in samples."""
+        assert self.sampling is not None, "a delay is of samples"
+        sampling = self.sampling.model_copy(update={"delay": ages})
+        return self.model_copy(update={"sampling": sampling})
 
     @property
     def constant_late(self) -> tuple[str, str] | None:

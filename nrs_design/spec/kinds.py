@@ -131,20 +131,12 @@ TORQUE_RATE = QuantityKind(
     "1e-5 N*m/s",
     sliding=_sliding("a rate of force", ("N/s",), "1e-5 N/s"),
 )
-NOISE_DENSITY = QuantityKind(
-    "a density of noise",
-    ("N^2*m^2*s",),
-    "1e-8 N^2*m^2*s",
-    {"N*m": "that is an rms: square it, and divide by the bandwidth in Hz"},
-    sliding=_sliding("a density of noise", ("N^2*s",), "1e-8 N^2*s"),
-)
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
 
 MASS = QuantityKind(
     "a mass", ("kg",), "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
 )
-FORCE = QuantityKind("a force", ("N",), "1.3 N")
 LENGTH = QuantityKind("a length", ("m",), "135 mm")
 ANGLE = QuantityKind(
     "an angle", ("rad",), "45 deg", rational=False, sliding=_sliding("a position", ("m",), "20 mm")

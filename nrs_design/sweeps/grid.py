@@ -18,7 +18,7 @@ from nrs_design.proof.text import exact_text, quoted
 from nrs_design.spec import parse_exact
 from nrs_design.spec.document import Mapping, Node, parse_document, read_source
 from nrs_design.spec.document import Sequence as Items
-from nrs_design.spec.edits import Edit, Keys, node_at, saying_instead
+from nrs_design.spec.edits import Edit, Keys
 from nrs_design.spec.exact import is_number
 from nrs_design.spec.faults import did_you_mean
 from nrs_design.spec.load import read_axes

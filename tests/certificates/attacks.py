@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design.certificates.certificate import Certificate, to_document
-from nrs_design.loop.cases import in_cases
-from nrs_design.search.cases import joined
+from tests.proof.cases import joined, twice
 from tests.proof.systems import genuine
 from tests.support import ROOT
 from tests.tables import table
@@ -224,9 +223,7 @@ def found(example):
     *cases, name = example.split(": ")
     system, evidence = genuine(name)
     if cases:
-        proofs = (evidence, evidence)
-        system = in_cases(system, (system, system))
-        evidence = joined(system, proofs)
+        system, evidence = twice(system), joined(system, (evidence, evidence))
     return to_document(Certificate("family", "0" * 64, None, {}, system, (evidence,), "0.1.0"))
 
 

@@ -18,11 +18,11 @@ from tests.support import SOFT_TISSUE, replaced
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 SENSOR = """
 sensor:
-  imu_error: 1 deg
-  tool: {mass: 0.797 kg, center_of_mass: {x: 0 m, y: 0 m, z: 0.2 m}}
+  bias: 0.0273 N*m
 """
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}"
-ERROR = 0.797 * 9.81 * 0.2 * np.radians(1)
+# 0.797 kg at 0.2 m, where the direction of gravity is off by 1 deg.
+ERROR = 0.0273
 
 
 def designed(path, more="", *changes, sensor=SENSOR):

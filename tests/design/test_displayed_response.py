@@ -16,7 +16,7 @@ from nrs_design.design.displayed_response import (
 )
 from nrs_design.errors import InternalError
 from nrs_design.loop.cut_loop import ContinuousAxis
-from nrs_design.loop.joint import Joint
+from nrs_design.loop.parameter_box import Joint
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.thesis import thesis

@@ -18,7 +18,7 @@ from nrs_design.design.passivity import first_root, real_parts, sampled_bands
 from nrs_design.design.passivity import passive_band as band_of
 from nrs_design.design.sampled_response import SampledAdmittance
 from nrs_design.loop.cut_loop import ContinuousAxis
-from nrs_design.loop.joint import Joint
+from nrs_design.loop.parameter_box import Joint
 from nrs_design.loop.program import INPUTS
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize

@@ -11,7 +11,7 @@ from nrs_design.controllers.laws import LAWS
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.laws.torque_impedance import Wall, passivity_margin
 from nrs_design.errors import SpecError
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import CommandTiming
 from nrs_design.models.drive import Takes, torque_drive
 from nrs_design.models.interval import Interval
 from nrs_design.pipeline.design import run_analysis

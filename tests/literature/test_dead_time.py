@@ -14,7 +14,7 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import CommandTiming
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.drive import Takes, motor_drive, velocity_drive
 from nrs_design.models.interval import Interval

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.step_law import StepFrame
-from nrs_design.loop.calendar import Calendar, Turn
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import Calendar, CommandTiming, Turn
 from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop

@@ -6,12 +6,8 @@ import pytest
 
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop import constant_parameters
-from nrs_design.loop.constant_parameters import (
-    ConstantParameter,
-    constant_sets,
-)
-from nrs_design.loop.located import MatrixMode
-from nrs_design.loop.spot import Spot, spot_of
+from nrs_design.loop.constant_parameters import constant_sets
+from nrs_design.loop.located import ConstantParameter, MatrixMode, Spot, spot_of
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
@@ -51,7 +47,7 @@ def sets_of(names, *parameters):
         own = [p for p in parameters if p.contact in (None, where)]
         spot = Spot.named(head, where) + spot_of(labels, (), own)
         items.append(MatrixMode(head, spot, where, RationalMatrix.from_rows([[1]])))
-    return [*constant_sets([item.corner for item in items], parameters)]
+    return [*constant_sets(items, parameters)]
 
 
 def test_a_mode_is_the_same_at_the_ends_of_what_it_does_not_touch():

@@ -14,7 +14,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
 from nrs_design.loop import hull
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import CommandTiming
 from nrs_design.loop.flow import AGAIN, HeldDrive
 from nrs_design.loop.hull import around
 from nrs_design.loop.sampled import DELTA

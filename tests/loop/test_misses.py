@@ -11,7 +11,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.loop.assemble import assemble_matrices
-from nrs_design.loop.misses import clock_of
+from nrs_design.loop.constraints import clock_of
 from nrs_design.proof.clock import keeps_turns
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import parse_spec

@@ -12,9 +12,8 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.loop.located import MatrixMode
-from nrs_design.loop.misses import modes_with_misses
-from nrs_design.loop.spot import Spot
+from nrs_design.loop.given_matrices import modes_with_misses
+from nrs_design.loop.located import MatrixMode, Spot
 from nrs_design.pipeline.radius import bound_radius
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
@@ -85,7 +84,7 @@ class Misses:
         ]
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)
         each, rules = modes_with_misses(items, rule)
-        return replace(first, modes=tuple(one.mode for one in each), switching=rules)
+        return replace(first, modes=tuple(item.mode for item in each), switching=rules)
 
     def lets_repeat(self, word):
         long = word * (self.of + 1)

@@ -77,7 +77,7 @@ def all_models():
 MODELS = {model.__name__.removesuffix("Spec"): model for model in all_models()}
 # Of these any other value is weaker, of the others one that is larger or smaller.
 EITHER = (
-    "Elastic KelvinVoigt Hand Maxwell HuntCrossley KelvinBoltzmann Tool Center Point Monitoring "
+    "Elastic KelvinVoigt Hand Maxwell HuntCrossley KelvinBoltzmann Monitoring "
     "TaskLimits Sinusoid Surface CommandCondition TorqueCondition ThresholdControl SignControl"
 )
 BORNE = (
@@ -85,7 +85,7 @@ BORNE = (
     "ScenarioLimits"
 )
 # Parts, which are compared by their own fields, and values that no two guesses fit.
-PARTS = {"filter", "tool", "pivot", "misses", "transparency", "accuracy", "model"}
+PARTS = {"filter", "misses", "transparency", "accuracy", "model"}
 PARTS |= {"center_of_mass", "surface", "side", "parameters"}
 WORDS = {*IdentifiedRangesSpec.model_fields, "linearized_about", "admittance"}
 

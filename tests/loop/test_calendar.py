@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.loop.command_timing import CommandTiming
+from nrs_design.loop.calendar import CommandTiming
 
 F = Fraction
 MS = F(1, 1000)

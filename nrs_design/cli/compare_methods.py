@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from nrs_design.search.comparison import MethodRun
     from nrs_design.spec import LoadedSpec
 
-PANEL = "Gradient iteration"
 COLUMNS = ("method", "coordinates", "order", "outcome", "updates", "proved rate", "condition of Q")
 
 

@@ -13,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 
 from nrs_design.identification.numeric import Array, Rows
-from nrs_design.models.recursion import run_first_order
+from nrs_design.models.contact.relaxation import run_first_order
 
 # Least distance of two poles.
 _LEAST_DISTANCE = 1e-4

@@ -126,24 +126,26 @@ def assemble(
     if points and (points not in POINTS or conditions.sampling is None):
         raise AssemblyError(f"there is no system at the points {points!r} of the ranges")
     scale = Fraction(0) if points == NOMINAL else scale
-    plant = plant.scaled(scale, conditions.contacted)
+    plant, sampling = plant.scaled(scale, conditions.contacted), conditions.sampling
     (drive,) = spec.drives
-    constants = tuple(
-        constants_of(
-            plant,
-            conditions.contacted,
-            drive,
-            sampled=conditions.sampling is not None,
-        )
-    )
-    if conditions.sampling is not None and conditions.constant_delay_key is not None:
-        said = conditions.constant_delay_key, conditions.command_delay, conditions.sampling.step
+    sampled = sampling is not None
+    constants = tuple(constants_of(plant, conditions.contacted, drive, sampled=sampled))
+    if sampling is not None and conditions.constant_delay_key is not None:
+        said = conditions.constant_delay_key, conditions.command_delay, sampling.step
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
-    system, modes = _closed(conditions, plant, design, constants, points)
+    modes: Sequence[AbstractLocatedMode]
+    if sampling is None:
+        system, modes = _assemble_continuous(conditions, plant, design, constants)
+    else:
+        from nrs_design.loop.system import close_sampled_loop
+
+        system, modes = close_sampled_loop(
+            conditions, sampling, plant, design, constants, points=bool(points)
+        )
     system = with_constants(system, constants, modes)
-    period = None if conditions.sampling is None else conditions.sampling.outer
+    period = None if sampling is None else sampling.outer
     # Environments with memory stand at their nominal values at all points.
     remembers = any(e.law.remembers for e in plant.among(design.contacts))
     but = points == ENDS and remembers and "memory"
@@ -160,23 +162,6 @@ def assemble(
     return _on_axis(replace(system, assumptions=assumptions), spec.axis)
 
 
-def _closed(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-    constants: Sequence[ConstantParameter],
-    points: str,
-) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
-    """Return the closed loop with all ranges varying, and its modes."""
-    if conditions.sampling is None:
-        state = state_of(conditions, plant, design)
-        return _assemble_continuous(conditions, plant, state, constants)
-    from nrs_design.loop.system import close_sampled_loop
-
-    sampling = conditions.sampling
-    return close_sampled_loop(conditions, sampling, plant, design, constants, points=bool(points))
-
-
 def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
     """Name the units of an axis in the place of those of one that turns; no number changes."""
     if axis is AxisType.ROTARY:
@@ -190,12 +175,12 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
 def _assemble_continuous(
     conditions: OperatingConditions,
     plant: Plant,
-    state: SharedState,
+    design: ControllerDesign,
     constants: Sequence[ConstantParameter],
 ) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
     from nrs_design.loop.close_loop import check_memory, close_loop, with_command
 
-    limited = conditions.initial_force is not None
+    state, limited = state_of(conditions, plant, design), conditions.initial_force is not None
     system, modes = close_loop(
         conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
     )

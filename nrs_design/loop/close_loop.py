@@ -106,7 +106,8 @@ def _resets(
         switches = permutations((c.name for c in controllers), 2)
     elif state.idle is not None and state.idle.reset:
         switches = leaving_impedance(controllers)
-    map_ = zeroing(state.names, state.zeroed)
+    zeroed = state.names[-1:] if state.offset == "measured" else state.beside
+    map_ = zeroing(state.names, zeroed)
     for source, target in switches:
         yield from ((*pair, map_) for pair in product(groups[source], groups[target]))
 
@@ -119,7 +120,8 @@ def _in_contact(
     by_contact: bool,
 ) -> Iterator[MatrixMode]:
     """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
-    touched: list[Environment | None] = [*state.contacts(controller)]
+    by_name = {environment.name: environment for environment in state.environments}
+    touched: list[Environment | None] = [by_name[name] for name in controller.contacts]
     if not touched:
         # A law without force feedback has the same mode in every contact, unless the plant differs.
         touched = [None, *(state.environments if state.feels else ())]

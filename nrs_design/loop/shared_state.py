@@ -17,7 +17,6 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import (
     SHARED_STATES,
-    Controller,
     ControllerDesign,
 )
 from nrs_design.controllers.gains import idle_decay
@@ -80,11 +79,6 @@ class SharedState:
         """The motion loop from position to position; its motor has no ranges."""
         return self.realization if self.joint is None else self.joint.nominal.placed
 
-    def contacts(self, controller: Controller) -> Iterator[Environment]:
-        """Yield what a controller touches."""
-        by_name = {environment.name: environment for environment in self.environments}
-        return (by_name[name] for name in controller.contacts)
-
     @property
     def motor_box(self) -> Box:
         """Where the motor may be."""
@@ -130,11 +124,6 @@ class SharedState:
     def feels(self) -> bool:
         """Whether it matters to a controller that takes no force what it touches."""
         return self.joint is not None or self.low_pass is not None or bool(self.memories)
-
-    @property
-    def zeroed(self) -> tuple[str, ...]:
-        """The states that a switch sets to zero, where switches reset any."""
-        return self.names[-1:] if self.offset == "measured" else self.beside
 
     def contact_box(self, environment: Environment | None) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.

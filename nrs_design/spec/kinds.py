@@ -137,6 +137,7 @@ LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
 MASS = QuantityKind(
     "a mass", ("kg",), "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
 )
+FORCE = QuantityKind("a force", ("N",), "1.3 N")
 LENGTH = QuantityKind("a length", ("m",), "135 mm")
 ANGLE = QuantityKind(
     "an angle", ("rad",), "45 deg", rational=False, sliding=_sliding("a position", ("m",), "20 mm")

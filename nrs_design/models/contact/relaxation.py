@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
-
-from nrs_design.models.recursion import run_first_order
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
+
+Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,3 +48,17 @@ class Relaxation:
         """The derivative of y by log tau, shape (n,), in m (rad)."""
         a, increments = self._a, self.motion.increments
         return run_first_order(a, a * self._h * self.y[:-1] + (self._gain - a) * increments)
+
+
+def run_first_order(factors: NDArray[Scalar], inputs: NDArray[Scalar]) -> NDArray[Scalar]:
+    """Run ``y[i + 1] = factors[i] y[i] + inputs[i]`` from y[0] = 0, real or complex; n + 1 values.
+
+    Solved as a bidiagonal system, which takes as long as a filter with a constant factor.
+    """
+    from scipy.linalg.lapack import dtbtrs, ztbtrs
+
+    banded = np.ones((2, len(inputs)), dtype=factors.dtype, order="F")
+    banded[1, :-1] = -factors[1:]
+    solve = ztbtrs if np.iscomplexobj(inputs) else dtbtrs
+    solution, _ = solve(banded, inputs[:, None], uplo="L")
+    return np.concatenate([np.zeros(1, solution.dtype), solution[:, 0]])

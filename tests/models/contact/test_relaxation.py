@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.models.contact.motion import Motion
-from nrs_design.models.contact.relaxation import Relaxation
+from nrs_design.models.contact.relaxation import Relaxation, run_first_order
 from tests.identification.support import wobble
 
 TAU = 0.3
@@ -29,3 +29,12 @@ def test_slope_by_the_logarithm_of_the_time_constant(log_tau):
     above, below = (Relaxation(motion, np.exp(log_tau + step)).y for step in (h, -h))
     slope = Relaxation(motion, float(np.exp(log_tau))).slope
     assert slope == pytest.approx((above - below) / (2 * h), abs=1e-7)
+
+
+@given(st.lists(st.tuples(st.floats(0, 1), st.floats(-10, 10)), min_size=1, max_size=30))
+def test_a_recursion_equals_the_loop(pairs):
+    factors, inputs = np.array(pairs).T
+    y = [0.0]
+    for factor, value in pairs:
+        y.append(factor * y[-1] + value)
+    assert np.allclose(run_first_order(factors, inputs), y, rtol=1e-12, atol=1e-12)

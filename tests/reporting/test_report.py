@@ -18,8 +18,7 @@ from tests.support import COMMUTING, GIVEN, SOFT_TISSUE, family, replaced, write
 
 # By their names, in order.
 FIGURES = {
-    "proved": "root-locus displayed-impedance sensitivity cost-insertion cost-withdrawal "
-    "eigenvalues run worst-case",
+    "proved": "root-locus displayed-impedance sensitivity eigenvalues run worst-case",
     "force": "root-locus force-locus-force eigenvalues run phase-plane",
     "refuted": "eigenvalues run",
     "inconclusive": "eigenvalues run phase-plane",

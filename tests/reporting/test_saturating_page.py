@@ -58,11 +58,3 @@ def test_gains_that_are_given_are_no_optimum(page):
     rows = {label: values for label, *values in table.rows}
     assert rows["Mt at the optimum [kg·m²]"] == ["given", "given"]
     assert rows["Bt at the optimum [N·m·s/rad]"] == ["given", "given"]
-    blocks = section(page, "What the gains give up").blocks
-    assert not any(isinstance(block, Table) for block in blocks)
-    maps = [b for b in blocks if isinstance(b, Illustration) and b.name.startswith("cost-")]
-    assert all("are given by the spec, not optimized" in one.caption for one in maps)
-    for one in maps:
-        (shown,) = one.figure.axes[0].get_legend_handles_labels()[1:]
-        assert "as shipped" in shown
-        assert "optimum within bounds and goals" not in shown

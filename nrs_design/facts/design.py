@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from nrs_design.design.goals import Achieved
     from nrs_design.design.measures import Measure
     from nrs_design.pipeline.design import Designed
-    from nrs_design.spec import InteractionDesignSpec
 
 
 def optimum_facts(designed: Designed, analysis: DesignAnalysis) -> dict[str, Any]:

@@ -37,8 +37,8 @@ COST_MEANING = (
 )
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "
-    "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
-    "rounding and saturation; sampled, with force samples that are all of the same age."
+    "ranges, each of them constant, of the linear loop with the gains that ship, in continuous "
+    "time: without friction, rounding and saturation."
 )
 
 

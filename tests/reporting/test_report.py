@@ -34,7 +34,7 @@ FIGURES = {
     "period": "eigenvalues run phase-plane",
     "dwell-refuted": "eigenvalues run phase-plane",
     "word": "eigenvalues run phase-plane",
-    "mixture": "eigenvalues run phase-plane",
+    "mixture": "eigenvalues",
     "discrete": "eigenvalues run phase-plane",
     "marginal": "eigenvalues run phase-plane",
 }
@@ -332,12 +332,8 @@ def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
     assert "a mean growth rate of" in words(report("period"))
 
 
-def test_mixture_shows_the_eigenvalue_of_the_average_and_grows(report):
-    mixture = report("mixture")
-    text = words(mixture)
-    assert "Eigenvalues of the average: " in text
-    norm = lines(figure(mixture, "run"))["run"].get_ydata()
-    assert norm[-1] > 10
+def test_mixture_shows_the_eigenvalue_of_the_average(report):
+    assert "Eigenvalues of the average: " in words(report("mixture"))
 
 
 def test_dwell_run_keeps_the_dwell_time(report):

@@ -387,7 +387,7 @@ def test_modes_without_a_row_of_their_own_are_named_together():
     assert "7 other modes" in labels
 
 
-@pytest.mark.parametrize("case", ["dwell", "polynomial", "period", "mixture", "inconclusive"])
+@pytest.mark.parametrize("case", ["dwell", "polynomial", "period", "inconclusive"])
 def test_phase_plane_says_what_its_axes_are(report, case):
     item = figure(report(case), "phase-plane")
     assert "no projection." in item.caption

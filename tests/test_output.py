@@ -15,7 +15,6 @@ from nrs_design.output import (
     RESPONSE,
     SCHEMA,
     SVG,
-    WORST_RUN,
     alone_in,
     check_html,
     check_place,
@@ -88,7 +87,6 @@ def test_a_working_folder_behind_a_link_is_the_users_own_choice(tmp_path, monkey
         (GATE, SARIF.format("nrs-design"), SARIF.format("ruff")),
         (GATE, f"{'  '.join(COLUMNS)}\n---", "spec  1 of the project\n"),
         (RESPONSE, f"{RUN},depth_rad,reference_rad,hand_rad_s,theta_rad,mode\n", f"{RUN},mode\n"),
-        (WORST_RUN, "time_s,torque_Nm,state-xp1,state-delta_rad,mode\n", "time_s,torque_Nm,mode\n"),
         (SCHEMA, schema_text(), "kind: switched-system"),
     ],
 )

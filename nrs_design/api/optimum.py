@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     )
     from nrs_design.design.goals import Achieved
     from nrs_design.design.measures import Measure
-    from nrs_design.design.passivity import SampledBand
-    from nrs_design.spec import InteractionDesignSpec
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,7 +97,7 @@ class Optimum(AbstractResult):
             **self.designed.loaded.facts,
             "motion_loop": motion_summary(analysis),
             "sensor": _sensor(self.designed),
-            "controllers": [_summary(self.designed.spec, item) for item in analysis.impedance],
+            "controllers": [_summary(item) for item in analysis.impedance],
             "warnings": [str(doubt) for doubt in analysis.warnings],
         }
 
@@ -145,7 +143,7 @@ def meanings(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     yield COST_MEANING
 
 
-def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
+def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
     from nrs_design.design import measures
 
     def worst(measure: Measure) -> float | None:
@@ -176,10 +174,6 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
         "not_passive_at_rad_s": broken and upper_float(broken),
-        "passivity_not_computed": None
-        if item.sampled or spec.sampling is None
-        else measures.PASSIVITY_NOT_COMPUTED,
-        "sampled_passivity": [_band(band) for band in item.sampled],
         "goals": goals_summary(item),
         "responses": responses_summary(item),
         "units": {
@@ -189,17 +183,6 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
             "impedance": unit("N*m*s/rad"),
             "stiffness": unit("N*m/rad"),
         },
-    }
-
-
-def _band(band: SampledBand) -> dict[str, Any]:
-    """Return where a sampled law is passive, and the exact witness that it is not beyond."""
-    between = band.broken and [lower_float(band.broken[0]), upper_float(band.broken[1])]
-    return {
-        "delay": band.age,
-        "passive_up_to_rad_s": lower_float(band.passive),
-        "not_passive_between_rad_s": between,
-        "not_passive_at_tangent": band.tangent and str(band.tangent),
     }
 
 

@@ -59,29 +59,16 @@ class WorstFound(AbstractResult):
         return self.designed.spec.axis
 
     def _facts(self) -> dict[str, Any]:
-        from nrs_design.reporting.worst_case import LEFT_OUT, found_in
+        from nrs_design.reporting.worst_case import LEFT_OUT
 
         case = self.case
-        found = [
-            {
-                "output": item.name,
-                "unit": item.unit,
-                "worst_found": item.value,
-                "limit": item.limit,
-                "certified_bound": item.bound,
-                "bound_over_found": item.ratio,
-                "exceeds_limit": item.exceeds,
-                "duration": float(run.time[-1]),
-            }
-            for item, run in zip(found_in(case), case.runs, strict=True)
-        ]
         facts = {
             "disturbances": [
                 {"name": c.name, "unit": c.unit, "bound": float(c.bound)}
                 for c in case.system.channels
             ],
             "disturbances_declared": case.declared,
-            "found": found,
+            "found": case.found,
             "not_modelled": [LEFT_OUT],
         }
         return self.designed.loaded.facts | {"worst_case": facts, "files": []}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,6 @@ from nrs_design.output import (
     PNG,
     RESPONSE,
     SVG,
-    WORST_RUN,
     Beginning,
     Output,
     check_place,
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.api.simulation import ScenarioRun, Simulation
-    from nrs_design.api.worst import WorstFound
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline.design import Designed
     from nrs_design.pipeline.scenarios import CertifiedRate, Runs
@@ -52,12 +51,12 @@ def simulate_scenarios(
     from nrs_design.pipeline.scenarios import names_of, run_scenarios
 
     name = designed.spec.name
-    _check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), RESPONSE)
+    _check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), tables=True)
     found = list(run_scenarios(designed, wanted, step))
     runs = Simulation.of(designed, found, prove())
     step("figures")
-    drawn = ((f"{name}.{one.name}", one.response.to_csv(), one.plot()) for one in runs)
-    files = _write_runs(out, drawn, RESPONSE)
+    drawn = ((f"{name}.{one.name}", one.plot(), one.response.to_csv()) for one in runs)
+    files = _write_runs(out, drawn)
 
     def show() -> None:
         if not wants_details():
@@ -79,66 +78,54 @@ def simulate_scenarios(
 def worst_case(
     designed: Designed, proof: Certificate | None, out: Path | None, step: Progress
 ) -> Answer:
-    """Search, and write the figure and the table of every run."""
+    """Search, and write the figure of every run."""
     from nrs_design.api.worst import WorstFound
     from nrs_design.pipeline.scenarios import run_worst_case
-    from nrs_design.reporting.worst_case import response_of
-    from nrs_design.simulation.worst_outputs import DEFLECTION
+    from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, UNDECLARED, meaning, worst_rows
 
-    begun = f"{designed.spec.name}.worst-"
-    names = (f"{begun}{name}" for name in ("force", "velocity", DEFLECTION))
-    _check_runs(out, names, WORST_RUN)
+    spec = designed.spec
+    begun = f"{spec.name}.worst-"
+    _check_runs(out, (f"{begun}{name}" for name in ("force", "velocity", "deflection")))
     case = run_worst_case(designed, proof, progress=step)
     found = WorstFound(designed, case)
     step("figures")
-    runs = (
-        (f"{begun}{run.output.name}", response_of(case, run).to_csv(), found.plot(run.output.name))
-        for run in case.runs
-    )
-    written = _write_runs(out, runs, WORST_RUN)
-    return Answer(lambda: found.to_dict() | {"files": written}, lambda: _print_worst(found))
+    written = _write_runs(out, ((f"{begun}{name}", found.plot(name)) for name in found.figures))
+
+    def show() -> None:
+        title = f"{spec.name}: the worst that an adversary found"
+        print_table(title, COLUMNS, worst_rows(case, spec))
+        say(meaning(case))
+        if not case.declared:
+            say(UNDECLARED)
+        say(f"not in it: {LEFT_OUT}")
+
+    return Answer(lambda: found.to_dict() | {"files": written}, show)
 
 
-def _print_worst(found: WorstFound) -> None:
-    from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, UNDECLARED, meaning, worst_rows
-
-    case, spec = found.case, found.designed.spec
-    title = f"{spec.name}: the worst that an adversary found"
-    print_table(title, COLUMNS, worst_rows(case, spec))
-    say(meaning(case))
-    if not case.declared:
-        say(UNDECLARED)
-    say(f"not in it: {LEFT_OUT}")
-
-
-def _places(folder: Path, name: str, table: Beginning) -> dict[Path, Beginning]:
-    """Return ``NAME.csv``, ``.svg`` and ``.png``, and how one that may be replaced begins."""
-    kinds: dict[str, Beginning] = {"csv": table, "svg": SVG, "png": PNG}
-    return {folder / f"{name}.{ending}": kind for ending, kind in kinds.items()}
-
-
-def _check_runs(folder: Path | None, names: Iterable[str], table: Beginning) -> None:
+def _check_runs(folder: Path | None, names: Iterable[str], *, tables: bool = False) -> None:
     """Refuse, before the work, a folder in which something else stands at one of the places."""
     if folder is None:
         return
-    for name in names:
-        for place, kind in _places(folder, name, table).items():
-            check_place(place, kind)
+    kinds: dict[str, Beginning] = {"svg": SVG, "png": PNG}
+    if tables:
+        kinds["csv"] = RESPONSE
+    for name, (ending, kind) in product(names, kinds.items()):
+        check_place(folder / f"{name}.{ending}", kind)
 
 
 def _write_runs(
-    folder: Path | None, runs: Iterable[tuple[str, str, Figure]], table: Beginning
+    folder: Path | None, runs: Iterable[tuple[str, Figure, *tuple[str, ...]]]
 ) -> list[str]:
-    """Write name, table and figure of all runs, once all of them are there; return their files."""
+    """Write figure, and table if any, of all runs, once all are there; return their files."""
     from nrs_design.reporting.images import to_png, to_svg_file
 
     if folder is None:
         return []
     outputs: list[Output] = []
-    for name, text, figure in runs:
-        contents: list[str | bytes] = [text, to_svg_file(figure), to_png(figure)]
-        places = zip(_places(folder, name, table).items(), contents, strict=True)
-        outputs += [(place, content, kind) for (place, kind), content in places]
+    for name, figure, *tables in runs:
+        outputs += [(folder / f"{name}.csv", table, RESPONSE) for table in tables]
+        outputs.append((folder / f"{name}.svg", to_svg_file(figure), SVG))
+        outputs.append((folder / f"{name}.png", to_png(figure), PNG))
     write_outputs(outputs)
     note(f"written to {folder}")
     return [str(path) for path, _, _ in outputs]

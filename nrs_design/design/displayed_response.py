@@ -54,7 +54,7 @@ class LargestResponse:
     # No parameters in their ranges and no frequency in the band give more; None if not shown.
     above: Fraction | None
     below: Fraction  # At one point there is at least this
-    square: Fraction  # Of the frequency there in rad/s; sampled, of tan(omega T/2); exactly
+    square: Fraction  # Of the frequency there in rad/s, exactly
     at: Mapping[str, Fraction]  # The parameters there, exactly
     omega: float  # The frequency in rad/s, for people
 

@@ -35,15 +35,10 @@ COST_MEANING = (
     "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "
     "without a load of the motor; gains are chosen by it."
 )
-PASSIVITY_NOT_COMPUTED = (
-    "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
-    "a filter of the force, missed deadlines, ranges or a load of the motor, or where the robot "
-    "closes its own motion loop."
-)
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "
-    "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
-    "rounding and saturation; sampled, with force samples that are all of the same age."
+    "ranges, each of them constant, of the linear loop with the gains that ship, in continuous "
+    "time: without friction, rounding and saturation."
 )
 
 

@@ -13,54 +13,21 @@ Ranges: times Mt (or Bt without inertia) and the time constant, N and D are affi
 tau, Mt, Bt and Kt, so the polynomial is of second degree at most in each. Anywhere in the box it is
 a mean of its Bernstein coefficients: where all of these are positive, so is it. Each parameter is
 unknown but constant; that is what a frequency is about.
-
-Of the admittance that a processor displays, the same is found for each age of the force sample. A
-hand applies a force F(t). It is sampled, the law makes a command of it, the command is held, and
-the motor turns. Of a force with the frequency omega, below half the sampling rate, the velocity of
-the tool has a part of the same frequency, and others beyond half the rate which take no power from
-that force. With ``z = exp(j omega T)`` and the law's transfer function U from force to command, the
-part is
-
-    V = Km/(tau j omega + 1)  (1 - 1/z)/(j omega T)  U(z).
-
-Where ``Re V > 0`` for all frequencies up to one, no force of finite energy and none but these
-frequencies takes energy from the robot (Parseval). Where ``Re V < 0``, a sinusoid does. Nothing is
-claimed of other forces: one that is zero at the samples and acts in between may take any amount, so
-no law that samples a force is passive for all of them. Where a virtual wall is displayed instead,
-the position is sampled, and Colgate and Schenkel (1997) have the condition.
-
-With ``z = (1 + w)/(1 - w)`` and ``w = j t``, ``t = tan(omega T/2)``, the sign of Re V is that of
-
-    Re W(j t) + tau omega Im W(j t),    W(w) = (1 - w) N(w) D(-w),    U = N/D,
-
-which is a polynomial in ``x = t^2``, but for ``omega t = (2/T) x h`` with ``h = atan(t)/t``. It is
-affine in h, so its sign is shown for a number below h and one above: convergents of Gauss's
-continued fraction of atan. N and D are those of `nrs_design.design.sampled_response`, affine in
-each of two enclosed numbers of the motor: so the polynomial is a mean of its Bernstein coefficients
-over their box, whose roots are isolated rigorously.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from itertools import product
-from math import floor
-from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
-    ONE,
     ZERO,
     Polynomial,
-    Quotient,
     as_fmpq,
     corners_in,
-    is_stable_over,
-    parts_on_axis,
-    polynomial,
     real_product,
     squared_over,
     zeros_at_rest,
@@ -73,14 +40,9 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
 
-if TYPE_CHECKING:
-    from nrs_design.design.sampled_response import SampledAdmittance
-
 # How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
 # often twice as far.
 SHARE, STEPS = Fraction(1, 10**5), 40
-# Convergents of the continued fraction of the arctangent: the last one, and the one before.
-DEPTH = 6
 
 Enclosed = tuple[Fraction, Fraction]
 
@@ -156,88 +118,3 @@ def _negative_beyond(
             return root
         step *= 2
     return None
-
-
-@dataclass(frozen=True)
-class SampledBand:
-    """Where the admittance that a processor displays is passive."""
-
-    age: int  # Of the force sample, always the same, in samples
-    # It is passive at every frequency up to this one, in rad/s; zero where that is not shown.
-    passive: Fraction
-    # Between these frequencies in rad/s is one at which it is not; None where none was found.
-    broken: Enclosed | None = None
-    tangent: Fraction | None = None  # The ``tan(omega T/2)`` of that frequency omega, exactly
-
-
-def sampled_bands(shown: SampledAdmittance, ages: Iterable[int]) -> tuple[SampledBand, ...]:
-    """Find where the displayed admittance is passive, for every age of the force in samples.
-
-    The motor has no ranges. Empty where the law that nobody holds is not shown to be stable: a
-    displayed admittance then says nothing.
-    """
-    if not is_stable_over(shown.quotient, shown.box):
-        return ()
-    return tuple(_band(shown, age) for age in ages)
-
-
-def _band(shown: SampledAdmittance, age: int) -> SampledBand:
-    """Bracket the first frequency at which the real part may be negative."""
-    signs, period = [*_signs(shown, age)], shown.period
-    if min(P[0] for P in signs) <= 0:
-        return SampledBand(age, ZERO)
-    brackets = [bracket for P in signs if (bracket := first_root(without_zeros(P))) is not None]
-    if not brackets:
-        # Up to half the sampling rate; pi is more than 3.14159.
-        return SampledBand(age, Fraction(314159, 100_000) / period)
-    low, high = min(brackets)
-    passive, _ = _frequency(root_below(low, 18), period)
-    t = _negative_beyond(signs, high, 12)
-    return SampledBand(age, passive, None if t is None else _frequency(t, period), t)
-
-
-def _signs(shown: SampledAdmittance, age: int) -> Iterator[Polynomial]:
-    """Yield polynomials in x of which what has the sign of Re V is a mean.
-
-    Where all are positive, so is Re V; where all are negative, it is negative.
-    """
-
-    def older(values: Any) -> Quotient:
-        command, poles = shown.command(values)
-        return Quotient(polynomial(-ONE, ONE) ** age * command, polynomial(ONE, ONE) ** age * poles)
-
-    corners = [corner[:2] for corner in corners_in(older, shown.box)]
-    lag = polynomial(2 * shown.motor.time_constant.nominal / shown.period, ZERO)
-    for depth in (DEPTH, DEPTH + 1):
-        yield from squared_over(corners, partial(_sign, lag=lag, depth=depth))
-
-
-def _sign(N: Polynomial, D: Polynomial, lag: Polynomial, depth: int) -> Polynomial:
-    """Return the sign polynomial; the lag is ``2 tau/T x``."""
-    real, imaginary = parts_on_axis(polynomial(-ONE, ONE) * N * D(polynomial(-ONE, ZERO)))
-    p, q = _arctangent(depth)
-    return q * real + p * lag * imaginary
-
-
-def _arctangent(depth: int) -> tuple[Polynomial, Polynomial]:
-    """Return a convergent p/q of ``atan(t)/t`` as polynomials in x, q positive for positive x.
-
-    ``atan(t)/t = 1/(1 + x/(3 + 4x/(5 + 9x/(7 + ...))))``. All terms are positive, so the
-    convergents are in turn above and below.
-    """
-    p, q = polynomial(ONE), polynomial(Fraction(2 * depth + 1))
-    for k in range(depth, 0, -1):
-        # 2k - 1 + k^2 x/(q/p)
-        p, q = q, (2 * k - 1) * q + (k * k * p).left_shift(1)
-    return p, q
-
-
-def _frequency(t: Fraction, period: Fraction) -> Enclosed:
-    """Enclose ``2 atan(t)/T`` between decimals."""
-    found = []
-    for depth in (DEPTH, DEPTH + 1):
-        p, q = (P(as_fmpq(t**2)) for P in _arctangent(depth))
-        ratio = p / q
-        found.append(2 * t * Fraction(int(ratio.p), int(ratio.q)) / period)
-    unit = 10**9
-    return Fraction(floor(min(found) * unit), unit), Fraction(-floor(-max(found) * unit), unit)

@@ -13,7 +13,7 @@ from nrs_design.design.displayed_response import (
     largest_impedance,
     largest_tracking_error,
 )
-from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
+from nrs_design.loop.cut_loop import AbstractAxis, ContinuousAxis
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -146,23 +146,11 @@ def _found(
 ) -> LargestResponse | str:
     """Bound a response, or say why that is not done."""
     band = goal.band[0].not_above, goal.band[1].not_below
-    if spec.sampling is not None and key == ACCURACY:
-        return "the law is sampled, and when a commanded velocity takes effect is not modelled"
-    if isinstance(axis, ProcessorAxis):
-        from nrs_design.design.sampled_response import (
-            largest_sampled_impedance,
-            sampled_admittance,
-        )
-
-        shown = sampled_admittance(spec, axis, law, ranges)
-        if isinstance(shown, str):
-            return shown
-        found = largest_sampled_impedance(shown, band, goal.limit)
-    elif not isinstance(axis, ContinuousAxis):
-        return "the force is sampled more often than the motion loop"
-    elif spec.late_at is not None:
+    if spec.sampling is not None or not isinstance(axis, ContinuousAxis):
+        return "the law is sampled"
+    if spec.late_at is not None:
         return "commands are late"
-    elif key == TRANSPARENCY:
+    if key == TRANSPARENCY:
         found = largest_impedance(axis, law, ranges, band, goal.limit)
     elif touched is not None and (
         touched.law not in (Elastic, KelvinVoigt) or touched.preloaded or touched.each_losable

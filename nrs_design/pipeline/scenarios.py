@@ -8,12 +8,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import axis_with
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed, run_analysis
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import upper
+from nrs_design.proof.channels import Output
 from nrs_design.spec import Doubt
 
 if TYPE_CHECKING:
@@ -245,6 +247,25 @@ class WorstCase:
     # Whether the spec says what disturbs; otherwise it is any command up to its limit.
     declared: bool
 
+    @property
+    def found(self) -> Sequence[Mapping[str, Any]]:
+        """The worst value of each quantity, its limit and its bound, as facts in SI."""
+        return [self._found(run) for run in self.runs]
+
+    def _found(self, run: WorstRun) -> dict[str, Any]:
+        name = run.output.name
+        limit, bound = self.limits.get(name), self.bounds.get(name)
+        return {
+            "output": name,
+            "unit": run.output.unit,
+            "worst_found": run.value,
+            "limit": limit,
+            "certified_bound": bound,
+            "bound_over_found": None if bound is None or not run.value else bound / run.value,
+            "exceeds_limit": limit is not None and run.value > limit,
+            "duration": float(run.time[-1]),
+        }
+
 
 def run_worst_case(
     designed: Designed,
@@ -257,17 +278,13 @@ def run_worst_case(
     modelled is a `DesignError`.
     """
     from nrs_design.simulation.worst_case import worst_runs
-    from nrs_design.simulation.worst_outputs import certified_bounds, deflection_of, forces_by_mode
 
     spec = designed.spec
     progress("adversary")
     try:
         system = _commanded(designed)
-        deflection = deflection_of(system)
-        outputs = (*system.outputs, *(() if deflection is None else (deflection,)))
-        touched = designed.plant.among(designed.design.contacts)
-        allowed = {"force": forces_by_mode(system, touched)}
-        runs = worst_runs(system, outputs, allowed)
+        outputs = (*system.outputs, *_deflection(system))
+        runs = worst_runs(system, outputs, designed.plant.among(designed.design.contacts))
     except (AssemblyError, ValueError) as error:
         message = error.message if isinstance(error, AssemblyError) else str(error)
         with placed(designed.loaded):
@@ -281,9 +298,43 @@ def run_worst_case(
         runs,
         {o.name: float(o.limit) for o in system.outputs if o.limit is not None}
         | {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si},
-        {} if certificate is None else certified_bounds(certificate.system, certificate.statements),
+        {} if certificate is None else _certified_bounds(certificate),
         spec.disturbances is not None,
     )
+
+
+def _deflection(system: SwitchedSystem) -> Iterator[Output]:
+    """Yield the deflection as an output, where it is a state."""
+    from nrs_design.proof.matrix import RationalMatrix
+    from nrs_design.simulation.worst_case import DEFLECTION
+
+    axis = axis_with(system.states)
+    delta = axis.named("delta [rad]")
+    if delta in system.states:
+        row = RationalMatrix.from_rows([[int(state == delta) for state in system.states]])
+        yield Output(DEFLECTION, axis.unit("rad"), (row,))
+
+
+def _certified_bounds(certificate: Certificate) -> dict[str, float]:
+    """Return certified bounds on every output and on the deflection, rounded up.
+
+    Bounds under all disturbances at once count. Where the force is a stiffness times the
+    deflection, the bound holds for every stiffness in its range, so also for the highest.
+    """
+    from nrs_design.certificates.bounds import bound_on
+    from nrs_design.proof.bounds import upper_float
+    from nrs_design.simulation.worst_case import DEFLECTION
+
+    found: dict[str, float] = {}
+    for output in certificate.system.outputs:
+        bound = bound_on(certificate.system, certificate.statements, output.name)
+        if bound is None:
+            continue
+        found[output.name] = upper_float(bound.level)
+        rows = [row.fractions()[0] for row in output.rows]
+        if output.name == "force" and not any(any(row[:-1]) for row in rows):
+            found[DEFLECTION] = upper_float(bound.level / max(abs(row[-1]) for row in rows))
+    return found
 
 
 def _commanded(designed: Designed) -> SwitchedSystem:

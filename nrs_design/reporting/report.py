@@ -31,7 +31,7 @@ from nrs_design.reporting.sections.tail import (
     rungs_section,
     spec_section,
 )
-from nrs_design.reporting.sections.worst_case import worst_case_section
+from nrs_design.reporting.worst_case import worst_case_section
 
 if TYPE_CHECKING:
     import datetime

@@ -1,9 +1,7 @@
-"""The worst runs found, in display units."""
+"""The worst runs that an adversary found, with limits and certified bounds, in display units."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,20 +9,22 @@ import numpy as np
 
 from nrs_design.axis import current, labelled
 from nrs_design.axis import unit as shown
+from nrs_design.errors import DesignError
+from nrs_design.pipeline.certification import Result
+from nrs_design.pipeline.design import Designed
+from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run
+from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.run import common_lever_arm
 from nrs_design.simulation.switched import SwitchedRun
-from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
+from nrs_design.simulation.worst_case import DEFLECTION, WorstRun, output_values, pushes_only
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.pipeline.scenarios import WorstCase
     from nrs_design.proof.channels import Output
-    from nrs_design.simulation.norms import Array
-    from nrs_design.simulation.worst_case import WorstRun
     from nrs_design.spec import InteractionDesignSpec
 
 COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
@@ -44,43 +44,12 @@ ABOVE = " (above)"
 # Which effects the adversary does not use.
 LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
-
-
-@dataclass(frozen=True, slots=True)
-class WorstValue:
-    """Worst value found of one quantity, its limit and certified bound; SI."""
-
-    # Such as ``force`` in ``N*m``.
-    name: str
-    unit: str
-    value: float  # That was found
-    # limit, bound: of the spec, and certified.
-    limit: float | None
-    bound: float | None
-
-    @property
-    def ratio(self) -> float | None:
-        """Certified bound over what was found; None without either."""
-        return None if self.bound is None or not self.value else self.bound / self.value
-
-    @property
-    def exceeds(self) -> bool:
-        """Whether what was found is beyond the limit."""
-        return self.limit is not None and self.value > self.limit
-
-
-def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
-    """Return the worst value found of each quantity."""
-    return tuple(
-        WorstValue(
-            run.output.name,
-            run.output.unit,
-            run.value,
-            case.limits.get(run.output.name),
-            case.bounds.get(run.output.name),
-        )
-        for run in case.runs
-    )
+_TITLE = "Worst case found"
+_CAPTION = (
+    "The worst run that was found for the force. Contact, controller and command change between "
+    "steps as the adversary likes, within the rules of the spec. No run crosses a dashed line. "
+    "`nrs-design simulate --worst-case` draws the worst runs for velocity and deflection, too."
+)
 
 
 def meaning(case: WorstCase) -> str:
@@ -91,16 +60,51 @@ def meaning(case: WorstCase) -> str:
 def worst_rows(case: WorstCase, spec: InteractionDesignSpec) -> list[list[str]]:
     """Return rows for `COLUMNS`: what was found rounded down, bounds rounded up."""
     rows, lever_arm = [], common_lever_arm(spec, spec.touched)
-    for item in found_in(case):
-        factor, unit = scale_of(item.name, item.unit, lever_arm)
-        limit = "–" if item.limit is None else f"{factor * item.limit:.4g}"
-        bound = "–" if item.bound is None else upper(Fraction(factor * item.bound), 4)
-        ratio = "–" if item.ratio is None else upper(Fraction(item.ratio), 3)
-        found = lower(Fraction(factor * item.value), 4)
-        if item.exceeds:
-            found += ABOVE
-        rows.append([item.name, found, unit, limit, bound, ratio])
+    for item in case.found:
+        factor, unit = scale_of(item["output"], item["unit"], lever_arm)
+        limit, bound, ratio = item["limit"], item["certified_bound"], item["bound_over_found"]
+        rows.append(
+            [
+                item["output"],
+                lower(Fraction(factor * item["worst_found"]), 4) + ABOVE * item["exceeds_limit"],
+                unit,
+                "–" if limit is None else f"{factor * limit:.4g}",
+                "–" if bound is None else upper(Fraction(factor * bound), 4),
+                "–" if ratio is None else upper(Fraction(ratio), 3),
+            ]
+        )
     return rows
+
+
+def worst_case_section(result: Result) -> Section | None:
+    """Show the worst runs found in their units, or say why none is; None for given matrices."""
+    designed = result.designed
+    if designed is None:
+        return None
+    try:
+        case = run_worst_case(designed, result.certificate)
+    except DesignError as error:
+        said = f"{error.message[0].upper()}{error.message[1:]}."
+        return Section(_TITLE, (Paragraph(said),))
+    undeclared = "" if case.declared else f"{UNDECLARED} "
+    said = f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. "
+    rows = tuple(_linked(designed, row) for row in worst_rows(case, designed.spec))
+    drawn = draw_worst(case, case.runs[0], designed.spec)
+    return Section(
+        _TITLE,
+        (
+            Paragraph(f"{said}Floating point, no part of the proof."),
+            Table("Worst found, limit and bound", COLUMNS, rows),
+            Illustration("worst-case", "The worst run found", _CAPTION, drawn),
+        ),
+    )
+
+
+def _linked(designed: Designed, row: list[str]) -> tuple[str, ...]:
+    """Return a row in which the limit leads to the line that sets it."""
+    name, found, unit, limit, *rest = row
+    key = "torque" if name == "force" else name
+    return (name, found, unit, linked(designed.loaded, limit, "limits", key), *rest)
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
@@ -131,31 +135,6 @@ def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> F
     return draw_bounded_run(SwitchedRun(run.time, run.states, mode), panels, who)
 
 
-def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
-    """Return a run as a table: quantities, states, disturbances, and the mode at every instant.
-
-    Of a force with a range, the largest.
-    """
-    named = {other.output.name: other.output for other in case.runs}
-    rows = [_largest(output_values(case.system, output, run.states)) for output in named.values()]
-    signals = [
-        Signal("torque" if name == "force" else name, output.unit) for name, output in named.items()
-    ]
-    held = np.concatenate([run.disturbances, run.disturbances[-1:]])
-    mode = np.append(run.mode, run.mode[-1:])
-    return TimeResponse(
-        run.time,
-        np.array(rows),
-        run.states.T,
-        held.T,
-        tuple(signals),
-        tuple(_signals(case.system.states)),
-        tuple(Signal(channel.name, channel.unit) for channel in case.system.channels),
-        mode,
-        _modes(case),
-    )
-
-
 def _modes(case: WorstCase) -> tuple[str, ...]:
     free = () if case.system.contact is None else case.system.contact.free
     return tuple(mode.name for mode in (*case.system.modes, *free))
@@ -165,16 +144,6 @@ def _controller(mode: str) -> str:
     """Return the controller of a mode, and whether it touches anything."""
     parts = mode.split("/")
     return f"{parts[0]}, no contact" if "free" in parts[1:] else parts[0]
-
-
-def _signals(states: tuple[str, ...]) -> Iterator[Signal]:
-    for text in states:
-        name, _, unit = text.partition(" [")
-        yield Signal(f"state {name}", unit.removesuffix("]"))
-
-
-def _largest(values: Array) -> Array:
-    return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
 
 
 def _panel(

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from nrs_design.proof.mode import Time
-from nrs_design.proof.switching import NOWHERE
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices, Norm
+from nrs_design.simulation.rules import Rules
 from nrs_design.simulation.saturation import saturated_step
 from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
 
@@ -33,33 +33,40 @@ def greedy_run(
 
     Modes in contact are possible while the deflection, the last state, is positive, and free modes
     while it is not; in continuous time contact changes at the end of a step only, so steps, in s,
-    must be short. A mode of a clock is possible where that allows it. It is a bad run, not the
-    worst one: nothing is proved by it. Norms take states of shape (..., n); with a clock, there is
-    one for each of its states, and time zero begins a round, or no deadline has been missed. The
-    modes of the run are those of `all_modes`.
+    must be short. The rules of switching are kept on this grid, which `fitting_step` gives. It is a
+    bad run, not the worst one: nothing is proved by it. Norms take states of shape (..., n); there
+    is one, or one for each state of a clock, or for each mode where switching is ruled. At time
+    zero a round begins, or no deadline has been missed. The modes of the run are those of
+    `all_modes`. A ValueError if the rules are too fine for this grid.
     """
-    each = [norms] if callable(norms) else list(norms)
-    possible, advance = _possible(system), _advance(system, step)
-    states, chosen, turns = [initial], [], [0]
+    each, every = [norms] if callable(norms) else list(norms), all_modes(system)
+    rules, advance = Rules.of(every, step), _advance(system, step)
+    of_action = rules.mode if system.clock is None else rules.target
+    free = np.arange(len(every.modes)) >= len(system.modes)
+    states, taken, node = [initial], list[int](), 0
     for _ in range(steps):
-        kept, ahead = possible(turns[-1], states[-1])
-        candidates = advance(states[-1], kept)
-        values = np.empty(len(kept))
-        for turn in {*ahead.tolist()}:
-            values[ahead == turn] = each[turn % len(each)](candidates[ahead == turn])
+        actions = rules.choices[node]
+        felt = free[rules.mode[actions]] == (free.any() and states[-1][-1] <= 0)
+        actions = np.unique(actions[felt])
+        jumped = rules.jumps[rules.jump[actions]] @ states[-1]
+        candidates, keys = advance(jumped, rules.mode[actions]), of_action[actions] % len(each)
+        values = np.empty(len(actions))
+        for key in {*keys.tolist()}:
+            values[keys == key] = each[key](candidates[keys == key])
         best = int(values.argmax())
-        chosen.append(int(kept[best]))
-        turns.append(int(ahead[best]))
+        taken.append(int(actions[best]))
         states.append(candidates[best])
-    unit = 1.0 if system.time is Time.DISCRETE else step
+        node = int(rules.target[taken[-1]])
+    keys, unit = of_action[taken], 1.0 if system.time is Time.DISCRETE else step
+    first = keys[0] if system.clock is None else 0
     instants = sampling_instants(unit, steps)
-    return SwitchedRun(instants, np.array(states), np.array(chosen), np.array(turns))
+    return SwitchedRun(instants, np.array(states), rules.mode[taken], np.array([first, *keys]))
 
 
 def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
-    """Return the norm along a run over its first value; shape (N + 1,).
+    """Return the norm along a run over its first value, as `greedy_run` takes it; shape (N + 1,).
 
-    Norms as for `greedy_run`; with a clock, the run begins with a round.
+    Of each mode, it is that of the mode in which a state was reached.
     """
     if callable(norms):
         values = norms(run.state)
@@ -70,31 +77,26 @@ def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
     return np.asarray(values / values[0])
 
 
-def _possible(system: SwitchedSystem) -> Callable[[int, Array], tuple[Indices, Indices]]:
-    """Return the function from the turn and a state to the modes that may be taken.
+def slowest(
+    system: SwitchedSystem,
+    norms: Norm | Sequence[Norm],
+    directions: Iterable[Array],
+    step: float,
+    steps: int,
+) -> Array:
+    """Return the state, among some, from which greedy runs of so many steps keep the most."""
 
-    With each it returns the turn after it.
-    """
-    modes, clock = all_modes(system).modes, system.clock
-    free = np.arange(len(modes)) >= len(system.modes)
-    kinds = np.array([0] if clock is None else clock.kind_of(mode.name for mode in modes))
+    def kept(x: Array) -> float:
+        return float(relative_norms(greedy_run(system, norms, x, step, steps), norms)[-1])
 
-    def possible(turn: int, x: Array) -> tuple[Indices, Indices]:
-        ahead = np.zeros(len(modes), dtype=np.int64)
-        if clock is not None:
-            for kind in clock.kinds:
-                target = clock.after(turn, kind)
-                ahead[kinds == kind] = NOWHERE if target is None else target
-        felt = free == (free.any() and x[-1] <= 0)
-        kept = np.flatnonzero(felt & (ahead != NOWHERE))
-        return kept, ahead[kept]
-
-    return possible
+    return max(directions, key=kept)
 
 
 def _advance(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
-    """Return the function from a state and modes to the states after a step in each of them."""
+    """Return the function from states and modes to the states after a step, one for each."""
     if system.saturation is not None:
-        return saturated_step(system, step)
+        saturated = saturated_step(system, step)
+        # Nothing resets its state.
+        return lambda states, modes: saturated(states[0], modes)
     maps = transition_matrices(all_modes(system), step)
-    return lambda x, modes: maps[modes] @ x
+    return lambda states, modes: (maps[modes] @ states[:, :, None])[:, :, 0]

@@ -22,11 +22,8 @@ _SAMPLES = 4000
 _FEWEST, _MOST = 3, 30
 # Samples in one step of the period, for a smooth curve.
 _SMOOTH = 24
-_HALVINGS = 40
 # Visible growth of a state.
 _GROWTH = 100.0
-# Fraction of the growth rate of the average that fast switching has to reach.
-_SHARE = 0.6
 
 
 @dataclass(frozen=True)
@@ -70,22 +67,13 @@ def mixture_matrix(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction
     return np.asarray(sum(float(w) * modes[name] for name, w in weights))
 
 
-def steps_of_mixture(
-    system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]
-) -> list[tuple[int, float]]:
-    """Return one period in which every mode has its share, short enough to follow the average."""
-    index = {mode.name: k for k, mode in enumerate(system.modes)}
-    wanted = float(np.linalg.eigvals(mixture_matrix(system, weights)).real.max())
-    shortest = fine_step(system)
-    period = shortest * 2.0**10
-    for _ in range(_HALVINGS):
-        steps = [(index[name], float(weight) * period) for name, weight in weights]
-        if period <= shortest and wanted <= 0:
-            break
-        if _growth_rate(system, steps) >= _SHARE * wanted > 0:
-            break
-        period /= 2
-    return steps
+def time_of_growth(eigenvalue: complex, system: SwitchedSystem) -> float:
+    """Return a time in s, or steps, so that a few times this show how one mode grows."""
+    discrete = system.time is Time.DISCRETE
+    rate = math.log(max(abs(eigenvalue), 1.0)) if discrete else eigenvalue.real
+    times = math.log(_GROWTH) / _FEWEST / rate if rate > 0 else math.inf
+    longest = _SAMPLES // _MOST if discrete else _SAMPLES // _MOST * fine_step(system)
+    return math.ceil(min(times, longest)) if discrete else min(times, longest)
 
 
 @dataclass(frozen=True)
@@ -139,14 +127,3 @@ def _periods(radius: float, samples: int) -> int:
     # Three periods of a growth by many decades would leave the range of doubles.
     fewest = _FEWEST if exponent < 100 else 1
     return max(fewest, min(wanted, _MOST, _SAMPLES // samples))
-
-
-def _growth_rate(system: SwitchedSystem, steps: Steps) -> float:
-    product, matrices = np.eye(system.order), mode_matrices(system)
-    with np.errstate(over="ignore", invalid="ignore"):
-        for mode, time in steps:
-            product = expm(matrices[mode] * time) @ product
-    if not np.isfinite(product).all():
-        return -math.inf
-    radius = float(np.abs(np.linalg.eigvals(product)).max())
-    return math.log(max(radius, 1e-300)) / sum(time for _, time in steps)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,12 +15,6 @@ from nrs_design.simulation.norms import Array, Indices, Norm
 # SciPy takes longer to load than most runs take.
 expm = late_function("scipy.linalg", "expm")
 
-# Visible growth of a state.
-_GROWTH = 100.0
-# Growth per step below which a run of an unstable mode is shown as one on the stability limit.
-_MARGINAL = 1e-5
-_MARGINAL_STEPS = 628
-_FEWEST, _MOST = 20, 4000
 _DIRECTIONS = 500
 
 
@@ -101,31 +94,6 @@ def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
     kept = system.modes[mode]
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
-
-
-def unstable_run(system: SwitchedSystem) -> SwitchedRun:
-    """Stay in the first mode, from the real part of the eigenvector that is worst for stability.
-
-    The run ends when the eigenvalue has let the state grow a hundredfold; where it lies on the
-    stability limit, after ten periods or time constants.
-    """
-    values, vectors = np.linalg.eig(mode_matrices(system)[0])
-    continuous = system.time is Time.CONTINUOUS
-    worst = int(np.argmax(values.real if continuous else np.abs(values)))
-    states = [vectors[:, worst].real / np.linalg.norm(vectors[:, worst].real)]
-    step = fine_step(system)
-    if continuous:
-        exponent = float(values[worst].real) * step
-    else:
-        exponent = math.log(max(float(abs(values[worst])), 1.0))
-    marginal = _MARGINAL_STEPS if continuous else _FEWEST
-    steps = math.log(_GROWTH) / exponent if exponent > _MARGINAL else marginal
-    count = min(max(math.ceil(steps), _FEWEST), _MOST)
-    transition = transition_matrices(system, step)[0]
-    for _ in range(count):
-        states.append(transition @ states[-1])
-    instants = sampling_instants(step, count)
-    return SwitchedRun(instants, np.array(states), np.zeros(count, dtype=np.int64))
 
 
 def sampling_instants(step: float, steps: int) -> Array:

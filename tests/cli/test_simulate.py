@@ -161,7 +161,7 @@ def test_the_worst_case_beside_limits_and_bounds(bounded, tmp_path):
         assert 0 < item["worst_found"] < item["certified_bound"]
         assert item["bound_over_found"] > 1
     assert found["force"]["exceeds_limit"] == (found["force"]["worst_found"] > 0.3)
-    names = {f"small.worst-{name}.{s}" for name in found for s in ("csv", "svg", "png")}
+    names = {f"small.worst-{name}.{s}" for name in found for s in ("svg", "png")}
     assert {path.name for path in (tmp_path / "runs").iterdir()} == names
     told = run("simulate", bounded, "--worst-case", "--no-bound", cwd=tmp_path).stdout
     assert "worst found" in told

@@ -34,7 +34,7 @@ FIGURES = {
     "period": "eigenvalues run phase-plane",
     "dwell-refuted": "eigenvalues run phase-plane",
     "word": "eigenvalues run phase-plane",
-    "mixture": "eigenvalues run phase-plane",
+    "mixture": "eigenvalues",
     "discrete": "eigenvalues run phase-plane",
     "marginal": "eigenvalues run phase-plane",
 }
@@ -332,12 +332,8 @@ def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
     assert "a mean growth rate of" in words(report("period"))
 
 
-def test_mixture_shows_the_eigenvalue_of_the_average_and_grows(report):
-    mixture = report("mixture")
-    text = words(mixture)
-    assert "Eigenvalues of the average: " in text
-    norm = lines(figure(mixture, "run"))["run"].get_ydata()
-    assert norm[-1] > 10
+def test_mixture_shows_the_eigenvalue_of_the_average(report):
+    assert "Eigenvalues of the average: " in words(report("mixture"))
 
 
 def test_dwell_run_keeps_the_dwell_time(report):
@@ -391,7 +387,7 @@ def test_modes_without_a_row_of_their_own_are_named_together():
     assert "7 other modes" in labels
 
 
-@pytest.mark.parametrize("case", ["dwell", "polynomial", "period", "mixture", "inconclusive"])
+@pytest.mark.parametrize("case", ["dwell", "polynomial", "period", "inconclusive"])
 def test_phase_plane_says_what_its_axes_are(report, case):
     item = figure(report(case), "phase-plane")
     assert "no projection." in item.caption

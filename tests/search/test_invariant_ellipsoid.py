@@ -203,7 +203,7 @@ def test_levels_of_the_robot_of_the_thesis(Bt, Mt, sections, most, ratio):
     system = thesis_robot(SOFT, Bt, Mt, contact="losable", **sections)
     found = level(system)
     assert found < most
-    (run,) = worst_runs(system, system.outputs[:1], {})
+    (run,) = worst_runs(system, system.outputs[:1])
     assert 1 < found / run.value < ratio
 
 

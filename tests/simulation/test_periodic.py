@@ -11,7 +11,7 @@ from nrs_design.proof.switching import Switching
 from nrs_design.simulation.periodic import (
     mixture_matrix,
     periodic_run,
-    steps_of_mixture,
+    time_of_growth,
 )
 from tests.simulation.systems import reset, system
 
@@ -55,18 +55,23 @@ def test_slow_growth_ends_after_thirty_periods_and_fast_growth_early():
     assert np.isfinite(fast.response.state).all()
 
 
-def test_fast_switching_follows_the_average():
+def test_an_average_is_the_weighted_sum():
     weights = (("m0", Fraction(1, 2)), ("m1", Fraction(1, 2)))
     assert mixture_matrix(SHEARS, weights) == pytest.approx(np.array([[-1, 5], [5, -1]]))
-    run = periodic_run(SHEARS, steps_of_mixture(SHEARS, weights))
-    growth = math.log(run.radius) / run.period
-    assert 0.6 * 4 <= growth <= 4
 
 
-def test_marginal_average_ends_the_search_for_a_period():
-    swing = system([[0, 1], [-1, 0]])
-    steps = steps_of_mixture(swing, (("m0", Fraction(1)),))
-    assert 0 < steps[0][1] <= 0.1
+@pytest.mark.parametrize("time", list(Time))
+def test_one_unstable_mode_grows_a_hundredfold(time):
+    modes = system([[2, 0], [0, "3/2"]], time=time)
+    run = periodic_run(modes, [(0, time_of_growth(2.0, modes))]).response
+    assert 99 <= np.linalg.norm(run.state[-1]) <= 1100
+
+
+def test_a_mode_at_the_border_keeps_its_size():
+    swing = system([[0, -1], [1, 0]])
+    run = periodic_run(swing, [(0, time_of_growth(1j, swing))]).response
+    assert np.linalg.norm(run.state, axis=1) == pytest.approx(1.0)
+    assert run.time[-1] > 60
 
 
 def test_the_reset_that_is_chosen_acts():

@@ -14,13 +14,11 @@ from nrs_design.simulation.switched import (
     mode_rates,
     sampled_direction,
     transition_matrices,
-    unstable_run,
     worst_direction,
 )
 from tests.simulation.systems import system
 
 # Narendra and Balakrishnan (1994), commuting modes.
-EUCLIDEAN = quadratic_norm(np.eye(2))
 COMMUTING = system([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
 
 
@@ -51,19 +49,6 @@ def test_step_resolves_the_fastest_eigenvalue():
 
 def test_eigenvalues_of_every_mode():
     assert np.sort_complex(mode_eigenvalues(COMMUTING)[1]) == pytest.approx([-2 - 3j, -2 + 3j])
-
-
-@pytest.mark.parametrize("time", list(Time))
-def test_unstable_run_grows_a_hundredfold(time):
-    run = unstable_run(alone(system([[-3]], [[2, 0], [0, "3/2"]], time=time), 1))
-    assert set(run.mode.tolist()) == {0}
-    assert EUCLIDEAN(run.state)[-1] >= 99
-
-
-def test_marginal_run_keeps_its_size():
-    run = unstable_run(system([[0, -1], [1, 0]]))
-    assert EUCLIDEAN(run.state) == pytest.approx(1.0)
-    assert run.time[-1] == pytest.approx(62.8)
 
 
 def test_sampled_direction_is_near_the_slowest_one():

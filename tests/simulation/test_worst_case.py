@@ -13,9 +13,10 @@ from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.pipeline.scenarios import run_scenarios, run_worst_case
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import ARBITRARY, Clock, Switching
+from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.rules import Rules
 from nrs_design.simulation.scenario import Control, Profile, Scenario, Surface
 from nrs_design.simulation.worst_case import worst_runs
 from nrs_design.spec import parse_spec
@@ -37,7 +38,7 @@ def oscillator(*stiffness, damping="1", switching=ARBITRARY):
 
 
 def found(system):
-    (run,) = worst_runs(system, system.outputs, {})
+    (run,) = worst_runs(system, system.outputs)
     return run
 
 
@@ -116,7 +117,7 @@ def test_two_times_that_are_far_apart():
     )
     at = math.log(10) / 900
     hump = 2 * (math.exp(-100 * at) - math.exp(-1000 * at))
-    values = [run.value for run in worst_runs(system, system.outputs, {})]
+    values = [run.value for run in worst_runs(system, system.outputs)]
     assert values == pytest.approx([hump, 1], rel=0.02)
     assert values[0] <= hump * (1 + 1e-12)
 
@@ -134,6 +135,49 @@ def test_modes_that_take_turns():
     assert run.value == pytest.approx(4 / 3)
     assert set(run.mode[::2]) == {0}
     assert 0 not in run.mode[1::2]
+
+
+# After three steps nothing is left of a push: every product of three modes is zero.
+NILPOTENT = ([[0, 2, 1], [0, 0, -1], [0, 0, 0]], [[0, -1, 3], [0, 0, 2], [0, 0, 0]])
+PUSHED, WATCHED = ([1, -2, 1], [-1, 1, 2]), [1, -1, 1]
+RULES = {
+    "free": Switching(),
+    "dwell": Switching(Fraction(2)),
+    "longest": Switching(stays=(("a", Stay(Fraction(2), Fraction(3))),)),
+    "resets": Switching(resets=(Reset("a", "b", matrix([[1, 0, 0], [0, -1, 0], [0, 0, 1]])),)),
+}
+
+
+def largest(rules, steps=7):
+    """Try every path; under given modes the best push has the sign of its effect."""
+    best = 0.0
+
+    def walk(node, taken):
+        nonlocal best
+        if len(taken) == steps:
+            p, total = np.array(WATCHED, dtype=float), 0.0
+            for action in reversed(taken):
+                mode = rules.mode[action]
+                total += abs(p @ PUSHED[mode])
+                p = p @ np.array(NILPOTENT[mode]) @ rules.jumps[rules.jump[action]]
+            best = max(best, total)
+            return
+        for action in dict.fromkeys(rules.choices[node].tolist()):
+            walk(int(rules.target[action]), [*taken, action])
+
+    walk(0, [])
+    return best
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_it_finds_what_full_enumeration_finds(name):
+    columns = tuple(matrix([[b] for b in own]) for own in PUSHED)
+    system = replace(
+        family(*NILPOTENT, time=Time.DISCRETE, names="ab", switching=RULES[name]),
+        channels=(Channel("push", "", Fraction(1), columns),),
+        outputs=(Output("x", "", (matrix([WATCHED]),)),),
+    )
+    assert found(system).value == pytest.approx(largest(Rules.of(system, 1.0)))
 
 
 def test_what_cannot_be_searched_is_refused():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,7 +11,7 @@ import numpy as np
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
-from nrs_design.controllers.laws import Admittance, CompliantLaw
+from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
@@ -34,11 +34,11 @@ from nrs_design.design.measures import (
     IMPEDANCE_MEASURES,
     Measure,
 )
-from nrs_design.design.passivity import PassiveBand, SampledBand, passive_band, sampled_bands
+from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.errors import DesignError
-from nrs_design.loop.cut_loop import ContinuousAxis, ProcessorAxis
+from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
@@ -68,10 +68,6 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Where the displayed admittance is passive, exactly, over the ranges of the motor; None for a
     # sampled law.
     band: PassiveBand | None = None
-    # The same for the law that is sampled, for every age of the force sample; empty where it is not
-    # computed: without sampling, with two periods, a spring, a filter, late commands, or ranges of
-    # the motor.
-    sampled: tuple[SampledBand, ...] = ()
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
     responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
@@ -163,7 +159,6 @@ def analyze(
         limit_at=limit_at,
         stiff=tuple(doubt_stiffness(controller.name, requirement, contacts, Mt, Bt)),
         band=None if axis is None else passive_band(axis, law, moving),
-        sampled=_sampled_bands(task, law, moving),
         lever_arm=_lever_arm(task, given),
         responses=tuple(
             judged_responses(task.spec, of_responses, task.axis, law, moving, task.plant)
@@ -210,19 +205,6 @@ def _moving(task: Task) -> dict[str, Interval]:
     motor = task.plant.actuator_ranges
     ranges = {"Km": motor.gain, "tau": motor.time_constant}
     return {name: r for name, r in ranges.items() if r.low != r.high}
-
-
-def _sampled_bands(
-    task: Task, law: CompliantLaw, ranges: Mapping[str, Interval]
-) -> tuple[SampledBand, ...]:
-    """Return where the sampled law is passive; empty where that is not computed."""
-    if not isinstance(task.axis, ProcessorAxis) or ranges or task.sensor.filter:
-        return ()
-    from nrs_design.design.sampled_response import sampled_admittance
-
-    shown = sampled_admittance(task.spec, task.axis, law, {})
-    least, most = task.axis.sampling.delay
-    return () if isinstance(shown, str) else sampled_bands(shown, range(least, most + 1))
 
 
 def too_stiff(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -27,7 +28,6 @@ from nrs_design.reporting.evidence.runs import (
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
-from nrs_design.simulation.admissible import norm_ratio
 from nrs_design.simulation.norms import (
     Array,
     Norm,
@@ -234,7 +234,8 @@ class _Functions:
         if self._lost or self.system.clock is not None or self.offer.leaving:
             return text
         matrices = scaled_matrices(*(form.Q for form in forms))
-        c = norm_ratio({str(k): Q for k, Q in enumerate(matrices)})
+        spectra = np.array([np.linalg.eigvalsh(Q)[[0, -1]] for Q in matrices])
+        c = math.sqrt(spectra.max() / spectra.min())
         size = f"{at_most(Fraction(c))} (floating point)" if np.isfinite(c) else "beyond floats"
         return (
             f"{text} In the Euclidean norm of the states, in their units, the bound holds with a "

@@ -25,9 +25,9 @@ from nrs_design.simulation.periodic import (
     PeriodicRun,
     mixture_matrix,
     periodic_run,
-    steps_of_mixture,
+    time_of_growth,
 )
-from nrs_design.simulation.switched import SwitchedRun, alone, mode_eigenvalues, unstable_run
+from nrs_design.simulation.switched import SwitchedRun, alone, mode_eigenvalues
 
 _TITLE = "Simulated witness"
 _MODE = "a mode that is not stable"
@@ -142,34 +142,25 @@ class _Witness:
         ((name, _),) = self.offer.steps
         modes = (*self.system.modes, *self.system.free_motions())
         index = next(i for i, mode in enumerate(modes) if mode.name == name)
-        single = alone(replace(self.system, modes=modes), index)
-        response, (values,) = unstable_run(single), mode_eigenvalues(single)
-        rate, factor = float(values.real.max()), float(np.abs(values).max())
-        line = (f"the eigenvalue alone, exp({rate:.4g} t)", np.exp(rate * response.time))
+        single = replace(
+            alone(replace(self.system, modes=modes), index), switching=ARBITRARY, clock=None
+        )
+        (values,) = mode_eigenvalues(single)
+        worst = complex(values[np.argmax(np.abs(values) if self.is_discrete else values.real)])
+        response = periodic_run(single, [(0, time_of_growth(worst, single))]).response
+        line = (
+            f"the eigenvalue alone, exp({worst.real:.4g} t)",
+            np.exp(worst.real * response.time),
+        )
         if self.is_discrete:
-            line = (f"the eigenvalue alone, {factor:.4g}^t", factor**response.time)
+            line = (f"the eigenvalue alone, {abs(worst):.4g}^t", abs(worst) ** response.time)
         yield from self._drawn(f"Staying in mode {name}", _STAYING, response, single, line)
 
     def average(self) -> Iterator[Block]:
-        """Switch fast, with the shares of the average."""
-        system, weights = self.system, self.offer.weights
-        average = np.linalg.eigvals(mixture_matrix(system, weights)).astype(complex)
-        run = periodic_run(system, steps_of_mixture(system, weights))
-        rate = float(average.real.max())
-        line = (f"the average alone, exp({rate:.4g} t)", np.exp(rate * run.response.time))
-        yield Paragraph(f"Eigenvalues of the average: {roots(average.tolist(), 6)} 1/s.")
-        grown = (
-            f"At this period the state grows by the factor {number(run.radius, 5)} each time."
-            if run.radius > 1 and rate > 0
-            else "The average is on the border of stability, so the run need not grow; but no rate "
-            "of decay holds for all signals."
-        )
-        caption = (
-            f"Every mode has its share of each period of {run.period:.4g} s. The faster the "
-            f"switching, the nearer it comes to the average, the dashed line. {grown}"
-        )
-        title = "Fast switching with these shares"
-        yield from self._drawn(title, caption, run.response, system, line)
+        """Say where the eigenvalues of the average are."""
+        average = np.linalg.eigvals(mixture_matrix(self.system, self.offer.weights))
+        values = roots(average.astype(complex).tolist(), 6)
+        yield Paragraph(f"Eigenvalues of the average: {values} 1/s.")
 
     def repeated(self) -> Iterator[Block]:
         """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""

@@ -22,8 +22,7 @@ from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import share_cut_off
 from nrs_design.simulation.switched import SwitchedRun
-from nrs_design.simulation.worst_case import WorstRun, worst_against
-from nrs_design.simulation.worst_outputs import output_values
+from nrs_design.simulation.worst_case import WorstRun, output_values, worst_against
 
 _BOUND = (
     "From rest, the state does not leave the set V = w' Q w <= 1 while the disturbance keeps its "

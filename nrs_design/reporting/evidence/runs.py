@@ -11,15 +11,15 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.document import Illustration, Section
+from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.words import allowed
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.simulation.admissible import active_norms, admissible_run
-from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
-from nrs_design.simulation.switched import SwitchedRun, fine_step, worst_direction
+from nrs_design.simulation.rules import fitting_step
+from nrs_design.simulation.switched import SwitchedRun, alone, fine_step, worst_direction
 
 Bound = tuple[str, Array]
 
@@ -35,6 +35,8 @@ _UNKNOWN_STEPS = 600
 # A run that keeps rules tries every allowed switch at every step.
 _RULED_MODES = 24
 _RULED_STEPS = 1500
+# Steps by which directions are compared.
+_FIRST = 20
 # States in contact that a run of rounds may begin at.
 _DIRECTIONS = 200
 
@@ -44,8 +46,8 @@ GREEDY = (
     f"which the norm is largest. {_NOT_WORST}"
 )
 RULED = (
-    "Simulated run that keeps the declared rules: the adversary stays, or switches when it may, "
-    f"whichever loses the least of the norm per time. {_NOT_WORST}"
+    "Simulated run that keeps the declared rules: at every step the adversary stays, or takes a "
+    f"mode that may follow, after which the norm of that mode is largest. {_NOT_WORST}"
 )
 _BOUNCING = (
     "Simulated run from the slowest direction in contact: at every step the adversary takes the "
@@ -68,6 +70,7 @@ _ACTIVE = (
     "the factor c."
 )
 _RISES = " In a mode that must be left it may rise above the bound; at the next switch it is below."
+_SECTION = "Simulated switching"
 _BAD = "One bad run"
 _UNPROVED = (
     "There is no bound: nothing is proved. Decay in this run is no sign of stability, and growth "
@@ -93,7 +96,7 @@ _PATH = (
 
 def simulated(*blocks: Illustration) -> Section:
     """Return the section of a run that no evidence of instability asks for."""
-    return Section("Simulated switching", blocks)
+    return Section(_SECTION, blocks)
 
 
 def run_figures(
@@ -173,11 +176,7 @@ def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:
     rng, size = np.random.default_rng(0), len(norms)
     directions = rng.standard_normal((_DIRECTIONS, system.order)) / norms[0](np.eye(system.order))
     directions[:, -1] = np.abs(directions[:, -1])
-
-    def kept(x: Array) -> float:
-        return float(relative_norms(greedy_run(system, norms, x, 1.0, size), norms)[-1])
-
-    return max(directions, key=kept)
+    return slowest(system, norms, directions, 1.0, size)
 
 
 def ruled_run(
@@ -189,26 +188,52 @@ def ruled_run(
     some modes must be left, in which a form may grow.
     """
     names = {form.name for form in forms}
-    alone = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
-    hardest = hardest_modes(system, None, _RULED_MODES)
-    of_modes = alone and names >= {mode.name for mode in system.modes}
-    functions = euclidean(system)
+    single = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
+    of_modes = single and names >= {mode.name for mode in system.modes}
     title, said, label, line = BESIDE, _SLOPE, EUCLIDEAN, "slope of the proved bound, "
-    norms: dict[str, Norm] = {}
+    functions: dict[str, Array] = {}
     if of_modes:
         title, said, line = AGAINST, _ACTIVE + _RISES * leaving, _BOUND
         label = "Root of V of the active mode [1]"
         matrices = scaled_matrices(*(form.Q for form in forms))
         functions = {form.name: Q for form, Q in zip(forms, matrices, strict=True)}
-        norms = {name: quadratic_norm(Q) for name, Q in functions.items()}
-    step, steps = horizon(hardest, rate)
-    response = admissible_run(hardest, functions, step, min(steps, _RULED_STEPS))
-    response = until_small(response, active_norms(hardest, response, functions))
-    values = active_norms(hardest, response, functions)
-    bound = bound_line(response, rate, system.time, line)
+    return _kept_to_rules(system, functions, (title, f"{RULED} {said}", label), rate, line)
+
+
+def _kept_to_rules(
+    system: SwitchedSystem,
+    functions: Mapping[str, Array],
+    words: tuple[str, str, str],
+    rate: float | None = None,
+    line: str = "",
+) -> Section:
+    """Draw a greedy run that keeps the rules, in norms by mode, or the Euclidean one without.
+
+    Title, caption and label are given.
+    """
+    title, caption, label = words
+    hardest = replace(hardest_modes(system, None, _RULED_MODES), contact=None)
+    if not hardest.is_uniform:
+        return Section(_SECTION, (Paragraph("No run is drawn: modes differ in size."),))
+    Qs = [functions.get(mode.name, np.eye(system.order)) for mode in hardest.modes]
+    norms = [quadratic_norm(Q) for Q in Qs]
+    step, steps = horizon(hardest, rate) if rate else (fine_step(hardest), _UNKNOWN_STEPS)
+    try:
+        step = fitting_step(hardest, step)
+        directions = [worst_direction(alone(hardest, k), Q) for k, Q in enumerate(Qs)]
+        initial = slowest(hardest, norms, directions, step, _FIRST)
+        response = greedy_run(hardest, norms, initial, step, min(steps, _RULED_STEPS))
+    except ValueError as error:
+        return Section(_SECTION, (Paragraph(f"No run is drawn: {error}."),))
+    values = relative_norms(response, norms)
+    if rate:
+        response = until_small(response, values)
+        values = values[: len(response.time)]
+    bound = bound_line(response, rate, system.time, line) if rate else None
     shown = (response, values, hardest, label, bound)
-    caption = f"{RULED} {said}{some_modes(system, hardest)}"
-    return simulated(*run_figures(title, caption, *shown, norms=norms))
+    inside = {name: quadratic_norm(Q) for name, Q in functions.items()}
+    caption += some_modes(system, hardest)
+    return Section(_SECTION, run_figures(title, caption, *shown, norms=inside))
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
@@ -217,21 +242,11 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     if system.clock is not None:
         norms = [quadratic_norm(identity)] * system.clock.length
         return Greedy(kept, kept, norms, identity[-1]).draw(_BAD, _UNPROVED_ROUNDS, EUCLIDEAN)
-    arbitrary = system.switching.is_arbitrary
-    hardest = hardest_modes(kept, None, trials_per_step(system) if arbitrary else _RULED_MODES)
-    if arbitrary:
+    if system.switching.is_arbitrary:
+        hardest = hardest_modes(kept, None, trials_per_step(system))
         greedy = Greedy(kept, hardest, quadratic_norm(identity), worst_direction(hardest, identity))
         return greedy.draw(_BAD, f"{GREEDY} {_UNPROVED}", EUCLIDEAN)
-    functions = euclidean(hardest)
-    response = admissible_run(hardest, functions, fine_step(hardest), _UNKNOWN_STEPS)
-    values = active_norms(hardest, response, functions)
-    said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
-    return simulated(*run_figures(_BAD, said, response, values, hardest))
-
-
-def euclidean(system: SwitchedSystem) -> dict[str, Array]:
-    """Return the identity as the function of every mode."""
-    return {mode.name: np.eye(mode.A.shape[0]) for mode in system.modes}
+    return _kept_to_rules(kept, {}, (_BAD, f"{RULED} {_UNPROVED}", EUCLIDEAN))
 
 
 def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:

@@ -13,7 +13,6 @@ from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.impedance import CURVES, by_controller, impedance_section
-from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.reporting.sections.torque import torque_section
@@ -67,8 +66,6 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(impedance_section(designed, analysis.impedance))
-        if all(item.requirement.axis is not None for item in analysis.impedance):
-            parts += filter(None, [landscape_section(designed, analysis.impedance)])
     if analysis.force:
         loci = (_force_locus(item) for item in analysis.force[:CURVES])
         parts.append(Section("Force control", (*force_blocks(designed, analysis), *loci)))

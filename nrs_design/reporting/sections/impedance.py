@@ -16,7 +16,6 @@ from nrs_design.design.measures import (
     IMPEDANCE_ERROR,
     LIMIT_MEANING,
     MEANING,
-    PASSIVITY_NOT_COMPUTED,
     SENSITIVITY_PEAK,
 )
 from nrs_design.proof.bounds import lower, upper
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
     from nrs_design.design.analysis import ImpedanceAnalysis
     from nrs_design.design.loops import Loops
-    from nrs_design.design.passivity import PassiveBand, SampledBand
+    from nrs_design.design.passivity import PassiveBand
     from nrs_design.design.transfer import FloatArray
     from nrs_design.pipeline.design import Designed
     from nrs_design.spec import LoadedSpec
@@ -53,12 +52,6 @@ _PASSIVE = (
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
-)
-
-_PASSIVE_SAMPLED = (
-    "Sampled: any force whose frequencies all lie below takes no energy from the robot, at the "
-    "worst of the ages of the force sample, each of them kept. No law that "
-    "samples a force is passive for every force: between two samples it acts unseen."
 )
 
 
@@ -98,8 +91,6 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("k limit at the lever arm [N/m], worst", _at_arm),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
     ("Not passive near [Hz], exact", lambda item: _not_passive(item.band)),
-    ("Sampled: passive up to [Hz], exact", lambda item: _sampled(item.sampled)),
-    ("Sampled, not passive near [Hz]", lambda item: _broken(item.sampled)),
 )
 
 # By the beginning of the label of a row: the key of the spec that it follows from, of the
@@ -127,17 +118,12 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
     title = "Impedance controllers: gains, and the worst over the ranges"
     tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items, _place)
-    spec = designed.spec
     said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
     paragraphs = [Paragraph(" ".join(said))]
     if any(item.band for item in items):
         paragraphs.append(Paragraph(_PASSIVE))
-    if spec.sampling is not None and not all(item.sampled for item in items):
-        paragraphs.append(Paragraph(PASSIVITY_NOT_COMPUTED))
     if any(item.problem.loop.contact.remembers for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
-    if any(item.sampled for item in items):
-        paragraphs.append(Paragraph(_PASSIVE_SAMPLED))
     figures = _figures(drawn, rest) if drawn else ()
     return Section("Impedance control", (*paragraphs, *tables, *figures))
 
@@ -176,20 +162,6 @@ def _not_passive(band: PassiveBand | None) -> str:
     if band is None or band.broken is None:
         return ""
     return upper(band.broken * Fraction(1000, 6283), 4)
-
-
-def _sampled(bands: Sequence[SampledBand]) -> str:
-    """Write the least band over the ages of the force sample."""
-    if not bands:
-        return ""
-    passive = min(band.passive for band in bands)
-    return lower(passive * Fraction(1000, 6284), 4) if passive else "not shown"
-
-
-def _broken(bands: Sequence[SampledBand]) -> str:
-    """Write the least frequency at which an age of the force sample is not passive."""
-    found = [band.broken[1] for band in bands if band.broken is not None]
-    return upper(min(found) * Fraction(1000, 6283), 4) if found else ""
 
 
 def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:

@@ -127,15 +127,12 @@ def sweep(
 
 def _named(words: Sequence[str]) -> tuple[str, ...]:
     """Return the words of the command that is named first."""
-    from nrs_design.spec.faults import did_you_mean
-
     for length in (1, 2):
         if " ".join(words[:length]) in SWEPT:
             return tuple(words[:length])
-    begun = [name for name in SWEPT if name.startswith(words[0])][:1]
     raise NrsDesignError(
         f"{words[0]!r} is no command that is run at every point",
-        remedy=did_you_mean(words[0], SWEPT, "there are", begun),
+        remedy=f"there are {', '.join(SWEPT)}",
     )
 
 
@@ -249,17 +246,15 @@ class _Swept:
         )
         counts = ", ".join(f"{count} {word}" for word, count in Counter(ends).items())
         say(f"{len(self.points)} points: {counts}")
-        if len(self.points) > MOST_ROWS:
-            say(f"{len(self.points) - MOST_ROWS} more rows: --csv FILE holds them all")
-        if more:
-            say(f"more facts differ (--show NAME, or --csv FILE for all): {', '.join(more)}")
+        if more or len(self.points) > MOST_ROWS:
+            say(f"--csv FILE holds all rows and facts; more that differ: {', '.join(more) or '-'}")
         for line in islice(self._messages(), MOST_MESSAGES):
             say(line)
 
     def _values(self, point: PointAnswer) -> list[str]:
         """Return the values of a point, without the unit where that stands above them."""
         return [
-            _number(text.removesuffix(f" {field.unit}")) if field.unit else text
+            text.removesuffix(f" {field.unit}")
             for field, text in zip(self.job.grid.fields, point.values, strict=True)
         ]
 
@@ -270,13 +265,6 @@ class _Swept:
         for message, point in reversed(said.items()):
             where = ", ".join(f"{p}={text}" for p, text in zip(paths, point.values, strict=True))
             yield f"{WORDS[point.code]}: {where}: {message}"
-
-
-def _number(text: str) -> str:
-    """Write a ratio as a decimal."""
-    from nrs_design.spec import parse_exact
-
-    return f"{float(parse_exact(text)):.10g}" if "/" in text else text
 
 
 def _message(point: PointAnswer) -> str:

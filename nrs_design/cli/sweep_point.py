@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -82,29 +83,20 @@ def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
 
 def _holds(kept: PointAnswer, place: Path, axes: Sequence[LoadedSpec]) -> bool:
     """Tell whether answer and exit code say no more than a certificate shows, checked again."""
-    shown: dict[str, Any] = {}
-    if kept.certificate and len(axes) == 1:
-        place.write_text(kept.certificate, encoding="utf-8")
-        shown = _shown(place, axes[0])
-    code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), kept.code)
-    return kept.code == code and is_shown(kept.result or {}, shown)
-
-
-def _shown(certificate: Path, loaded: LoadedSpec) -> dict[str, Any]:
-    """Return what a certificate shows; nothing, if it does not hold, or belongs to another spec."""
     from nrs_design.certificates.verify import verify
     from nrs_design.facts.certification import shown_facts
 
-    with about(getattr(loaded.spec, "axis", None)):
-        try:
-            found = verify(certificate, loaded)
-        except CertificateError:
-            return {}
-        if found.certificate is None or found.fault is not None:
-            return {}
-        # As JSON holds it, which has no tuples.
-        facts: dict[str, Any] = json.loads(json.dumps(shown_facts(found.certificate, loaded.spec)))
-    return facts
+    shown: dict[str, Any] = {}
+    if kept.certificate and len(axes) == 1:
+        (loaded,) = axes
+        place.write_text(kept.certificate, encoding="utf-8")
+        with about(getattr(loaded.spec, "axis", None)), suppress(CertificateError):
+            found = verify(place, loaded)
+            if found.certificate is not None and found.fault is None:
+                # As JSON holds it, which has no tuples.
+                shown = json.loads(json.dumps(shown_facts(found.certificate, loaded.spec)))
+    code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), kept.code)
+    return kept.code == code and is_shown(kept.result or {}, shown)
 
 
 def _computed(job: Job, place: Path) -> tuple[int, dict[str, Any]]:

@@ -239,10 +239,10 @@ need(hashlib.sha256(text.encode()).hexdigest() == o["id"], "it was altered")
 need(o["schema"][-2:] == "/9" and o["time"] in ("continuous", "discrete"), "another schema")
 n, contact, flow = len(o["states"]), o.get("contact", {}), o["time"] == "continuous"
 kinds = ("graph", "no-common-quadratic", "constants-quadratic")
-kinds = () if {"cases", "clock", "pulls", "couplings"} & {*o, *contact} else kinds
+kinds = () if {"clock", "pulls", "couplings"} & {*o, *contact} else kinds
 unknown = [statement["kind"] for statement in o["statements"] if statement["kind"] not in kinds]
 for kind in unknown:
-    print(f"{kind}: not checked here (this kind, cases, turns, pulls or axes)", flush=True)
+    print(f"{kind}: not checked here (this kind, turns, pulls or axes)", flush=True)
 rules = {} if o["switching"] == "arbitrary" else {**o["switching"]}
 required = contact.get("required")
 count, every = len(o["modes"]), o["modes"] + contact.get("free", [])

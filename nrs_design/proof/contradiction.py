@@ -188,23 +188,6 @@ def _odd_enclosure(system: SwitchedSystem) -> Iterator[str]:
         yield "an enclosure is empty, or its modes are not of one size"
 
 
-def _odd_case(system: SwitchedSystem) -> Iterator[str]:
-    if not system.cases:
-        return
-    named = [name for names in system.cases for name in names]
-    if sorted(named) != sorted(mode.name for mode in system.every_mode):
-        yield "a mode is in no case, or in two"
-    if not system.switching.is_arbitrary or not system.is_uniform:
-        yield "there are cases, and rules of switching or modes of unlike size besides"
-    cases = [frozenset(names) for names in system.cases]
-    if any(not any(case.issuperset(names) for case in cases) for names in system.enclosures):
-        yield "what is between the modes of an enclosure is in no case"
-    for only in map(system.only, system.cases):
-        if not only.modes or bool(only.free) is not bool(system.free):
-            yield "a case has no mode, in contact or free"
-        yield from _odd_clock(only)
-
-
 def _odd_errors(
     system: SwitchedSystem,
     items: Sequence[Rounding | CutOff],
@@ -249,5 +232,4 @@ _ODDITIES = (
     _odd_clock,
     _odd_saturation,
     _odd_enclosure,
-    _odd_case,
 )

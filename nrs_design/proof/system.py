@@ -49,9 +49,6 @@ class SwitchedSystem:
     # one. Sets that are one at the corners of constant parameters have the same weights, in their
     # order. A mode that is in no set is attained itself.
     enclosures: tuple[tuple[str, ...], ...] = ()
-    # Sets of modes, in contact or free, of which one is in force for ever: no signal leads from one
-    # set to another, and nobody knows which it is. Every mode is in one. None: all are one set.
-    cases: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
         """Take the word for a time as that time, so that no check takes it for another."""
@@ -108,7 +105,6 @@ class SwitchedSystem:
             channels=tuple(channels),
             saturation=None,
             enclosures=tuple(item for item in self.enclosures if item[0] in names),
-            cases=(),
         )
 
     @property
@@ -141,8 +137,8 @@ class SwitchedSystem:
 
     @property
     def has_constants(self) -> bool:
-        """Whether parameters are unknown but constant, anywhere or in cases."""
-        return bool(self.switching.fixed_ends or self.cases)
+        """Whether parameters are unknown but constant."""
+        return bool(self.switching.fixed_ends)
 
     def enclosure_of(self, mode: str) -> tuple[str, ...]:
         """TRUSTED: return the modes between which what is attained is; a mode that is, alone."""

@@ -90,11 +90,9 @@ def rate_limit(system: SwitchedSystem) -> float | None:
 
     In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
     """
-    parts = [system.only(frozenset(names)) for names in system.cases] or [system]
-    modes = [part.lasting_modes() for part in parts]
-    if not all(modes):
+    limits = [limit_rate(to_floats([m.A]), system.time) for m in system.lasting_modes()]
+    if not limits:
         return None
-    limits = [limit_rate(to_floats([m.A]), system.time) for part in modes for m in part]
     limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
     return limit if np.isfinite(limits).all() else None
 

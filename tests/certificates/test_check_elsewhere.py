@@ -81,7 +81,7 @@ def test_what_ships_holds(path, monkeypatch, capsys):
     document = json.loads(path.read_text())
     known = "pulls" not in document.get("contact", {})
     assert decide(path, monkeypatch) == (0 if known else 3)
-    said = "holds" if known else "not checked here (this kind, cases, turns, pulls or axes)"
+    said = "holds" if known else "not checked here (this kind, turns, pulls or axes)"
     kinds = [item["kind"] for item in document["statements"]]
     assert capsys.readouterr().out.splitlines() == [f"{kind}: {said}" for kind in kinds]
 

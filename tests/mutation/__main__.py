@@ -46,7 +46,7 @@ BESIDE = {
     ),
     "stays": (ROWS, KINDS / "test_graph.py"),
     "__init__": (KINDS / "test_tampering.py",),
-    "contradiction": (TESTS / "test_cases.py", TESTS / "test_saturation.py"),
+    "contradiction": (ROWS, TESTS / "test_saturation.py"),
     "fields": (KINDS / "test_tampering.py",),
     "enclosure": (ROWS, KINDS / "test_growing_sequence.py", TESTS / "test_stays.py"),
     "saturation": (

@@ -308,8 +308,6 @@ class AbstractEvidence(ABC):
         loses = system.contact is not None and system.contact.required
         if loses and self.shows.is_good and not self.covers_lost_contact:
             return f"evidence of kind {self.kind} does not cover the loss of contact"
-        if system.cases and not self.shows.is_good:
-            return f"evidence of kind {self.kind} does not know which case is there"
         if system.clock is not None and not self.covers_clock:
             return f"evidence of kind {self.kind} does not know that modes take turns"
         return self.find_misfit(system)

@@ -249,9 +249,9 @@ class FormsOnGraph(AbstractFunction):
         sizes = {MODES: system.order}
         if self.covers_lost_contact:
             sizes[FREE] = system.order - 1
-        length = 0 if system.clock is None else system.clock.length
-        for count in filter(None, (length, len(system.cases))):
-            sizes = {at_place(place, k): n for k in range(count) for place, n in sizes.items()}
+        if (clock := system.clock) is not None:
+            turns = range(clock.length)
+            sizes = {at_place(place, k): n for k in turns for place, n in sizes.items()}
         return sizes
 
     def _find_odd_places(self, system: SwitchedSystem) -> str | None:
@@ -545,7 +545,7 @@ class FormsOnGraph(AbstractFunction):
 
 
 def at_place(place: str, turn: int) -> str:
-    """Return a place at a step of a round, or in a case."""
+    """Return a place at a step of a round."""
     return f"{place} {turn}"
 
 
@@ -558,12 +558,6 @@ def steps_together(
     The modes are of one size, and may take turns; contact is kept unless it is `lost` and made. The
     rate that maps are to keep decides in which units they are counted.
     """
-    if system.cases:
-        return tuple(
-            replace(step, source=at_place(step.source, k), target=at_place(step.target, k))
-            for k, names in enumerate(system.cases)
-            for step in steps_together(system.only(frozenset(names)), acting, rate, lost)
-        )
     grain = grain_of(rate**2)
 
     def placed(part: SwitchedSystem) -> tuple[Step, ...]:

@@ -51,14 +51,7 @@ def free_sentence(
     law = "x' = A x" if continuous else "x+ = A x"
     of = "" if x == "w" else f" of {law}"
     among = f"switching arbitrarily among {modes}"
-    if system.cases:
-        parts.append(f"in each of {len(system.cases)} cases, one of which is there for ever,")
-        among = "switching arbitrarily among its modes"
-    if lost and system.cases:
-        among = (
-            "with contact lost and made again at any time and switching arbitrarily among its modes"
-        )
-    elif lost and system.contact is not None:
+    if lost and system.contact is not None:
         free = counted(len(system.contact.free), "mode")
         among = (
             "with contact lost and made again at any time and switching arbitrarily among "
@@ -86,7 +79,6 @@ def _norm(
 ) -> str:
     """Say in which norm the bound is."""
     of = [] if system.clock is None else [f"of {_turn(system.clock)}"]
-    of += ["of the case"] if system.cases else []
     of += [] if alike else ["of contact or of free motion"]
     which = f" with the Q {' and '.join(of)}" if of else ""
     parts = []
@@ -98,7 +90,6 @@ def _norm(
     if degree > 1:
         form = f"positive definite form{'s' * (count > 1)} of degree {2 * degree} in {x}"
         which = "" if system.clock is None else f", that of {_turn(system.clock)}"
-        which += ", one for each case" if system.cases else ""
         said = f"the largest of some {form}" if count > 1 else f"a {form}"
         parts.append(f"|{x}|^{2 * degree} is {said}{which}")
     elif count > 1:

@@ -133,19 +133,13 @@ const check = (() => {
       const flight = { ...s, n: n - 1, source: "free", M: s.M.map(without), facts };
       return steps.push(left(flight), ...(flow ? [] : [flight, { ...left(flight), target: "modes" }]));
     });
-    if (!clock) return inCases(S, steps);
+    if (!clock) return steps;
     const { length, first, more = [], ahead = range(length).map((k) => (k ? [-1n, BigInt(k + 1) % length] : [1n, -1n])) } = clock, named = [first, ...more], groups = [S.names.slice(0, S.count), S.names.slice(S.count)], kind = (name) => named.concat([[name]]).findIndex((own) => own.includes(name)), kinds = named.length + 1, count = (names) => new Set(names.map(kind)).size;
     distinct(named.flat(), S.names);
     need(!flow && length > 1n && S.o.switching === "arbitrary" && ahead.length === Number(length), "modes take turns without steps");
     need(groups.every((names) => !names.length || count(names) === kinds) && (S.o.enclosures ?? []).every((names) => count(names) === 1), "a turn has no mode");
     need(ahead.every((leads) => leads.length === kinds && leads.some((to) => to >= 0n) && leads.every((to) => to >= -1n && to < length)), "an automaton is odd");
-    return inCases(S, ahead.flatMap((leads, k) => steps.map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${leads[kind(s.mode)]}` })).filter(({ mode }) => leads[kind(mode)] >= 0n)));
-  }
-  // Of cases one is there for ever: each has places of its own.
-  function inCases({ o: { cases, switching }, names }, steps) {
-    if (!cases) return steps;
-    need(switching === "arbitrary" && cases.flat().sort().join() === [...names].sort().join(), "a mode is in no case, or in two");
-    return cases.flatMap((own, k) => steps.filter((s) => own.includes(s.mode)).map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${k}` })));
+    return ahead.flatMap((leads, k) => steps.map((s) => ({ ...s, source: `${s.source} ${k}`, target: `${s.target} ${leads[kind(s.mode)]}` })).filter(({ mode }) => leads[kind(mode)] >= 0n));
   }
   // Every step of a system that keeps rules of switching: its places are the modes.
   function stepsByMode(S, leaving, [p, q]) {
@@ -208,7 +202,7 @@ const check = (() => {
     }
     for (const node of nodes) need(definite(own(form(node.form, sizes[node.place], d), 1n)), `a form at ${node.place} is not positive definite`);
     const flat = new Map(nodes.filter(() => lost && S.flow).map((node) => [`${node.place.split(" ")[1]}/${form(node.form, sizes[node.place], d, S.n - 1).rows.join()}`, 1]));
-    need(flat.size <= (lost && S.flow ? S.o.cases?.length ?? 1 : 0), "it jumps where contact is lost");
+    need(flat.size <= (lost && S.flow ? 1 : 0), "it jumps where contact is lost");
     for (const s of steps) for (const from of nodes) nodes.forEach((to, b) => {
       if (from.place !== s.source || to.place !== s.target) return;
       const after = form(to.form, sizes[s.target], d, s.M.length), power = BigInt(2 * d * s.time);
@@ -222,7 +216,6 @@ const check = (() => {
     return `decay like ${shown}${lost ? ", through loss of contact" : ""}${rounds ? ", with rounding" : ""}`;
   }
   function noCommonQuadratic(S, { factors }) {
-    known(!S.o.cases, "a statement on cases");
     distinct(factors.map(([name]) => name), S.names.slice(0, S.count));
     need(S.uniform && factors.every(([, L]) => L.length === S.n), "the factors are not those of modes");
     need(factors.every(([, L, ...more]) => L.every((row) => row.length === L[0].length) && !more.length), "a factor has no shape");

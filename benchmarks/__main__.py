@@ -17,6 +17,7 @@ BENCHMARKS = (
     "cold_pair",
     "verify_shipped",
     "many_modes",
+    "exact_check",
     "random_families",
     "gradient_share",
     "beyond_quadratic",

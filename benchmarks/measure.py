@@ -22,7 +22,7 @@ from nrs_design.search.method import Method
 
 T = TypeVar("T")
 LAUNCHER = Path(__file__).with_name("launcher.py")
-LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy")
+LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")
 
 
 @dataclass(frozen=True)

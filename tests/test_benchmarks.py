@@ -14,7 +14,7 @@ from tests.support import ROOT
 FINDING = Finding("work", "result", "aim", True, 1.0)
 COMPARISON = Comparison("work", "peer", 2.0, 1.0, None)
 # What only the session of the benchmarks installs.
-PEERS = {"unicorn"}
+PEERS = {"sympy", "unicorn"}
 
 
 @pytest.fixture

@@ -30,6 +30,7 @@ from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.answers import PointAnswer, is_shown
 from nrs_design.sweeps.grid import Grid
 
+CERTIFYING = ("certify-switching",)
 # What no two runs have in common; what is said of other specs, which no certificate here shows; and
 # advice about the file, which is not what the point is about.
 LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps", "rho"})
@@ -56,7 +57,7 @@ def answer_point(job: Job, point: tuple[tuple[str, ...], PointAnswer | None]) ->
         try:
             axes = read_axes(job.spec)
             key = _key(job, axes)
-            if kept is not None and kept.key == key and _holds(kept, place, axes):
+            if kept is not None and kept.key == key and _holds(job, kept, place, axes):
                 return kept
             place.unlink(missing_ok=True)
             code, result = _computed(job, place)
@@ -81,7 +82,7 @@ def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
     return hash_meaning({"spec": means, "asked": asked, "version": __version__})
 
 
-def _holds(kept: PointAnswer, place: Path, axes: Sequence[LoadedSpec]) -> bool:
+def _holds(job: Job, kept: PointAnswer, place: Path, axes: Sequence[LoadedSpec]) -> bool:
     """Tell whether answer and exit code say no more than a certificate shows, checked again."""
     from nrs_design.certificates.verify import verify
     from nrs_design.facts.certification import shown_facts
@@ -95,15 +96,18 @@ def _holds(kept: PointAnswer, place: Path, axes: Sequence[LoadedSpec]) -> bool:
             if found.certificate is not None and found.fault is None:
                 # As JSON holds it, which has no tuples.
                 shown = json.loads(json.dumps(shown_facts(found.certificate, loaded.spec)))
-    code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), kept.code)
-    return kept.code == code and is_shown(kept.result or {}, shown)
+    # Where commands certify, no other code than that of a certificate, or inconclusive, is taken.
+    unshown = exit_codes.INCONCLUSIVE if job.command == CERTIFYING else kept.code
+    code = exit_codes.OF_VERDICT.get(str(shown.get("verdict")), unshown)
+    known = kept.code in exit_codes.OF_SEVERITY and bool(kept.result)
+    return known and kept.code == code and is_shown(kept.result or {}, shown)
 
 
 def _computed(job: Job, place: Path) -> tuple[int, dict[str, Any]]:
     """Run the command; return its exit code and its document."""
     import typer
 
-    placed = ("--out", str(place)) if job.command == ("certify-switching",) else ()
+    placed = ("--out", str(place)) if job.command == CERTIFYING else ()
     arguments = [*job.command, str(job.spec), *job.options, *placed, "--json", "--quiet"]
     program, code = program_of(job.command[0]), exit_codes.PROVED
     with taking_json() as documents:

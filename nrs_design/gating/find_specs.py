@@ -14,9 +14,10 @@ from nrs_design.spec.load import SPEC_KINDS, axes_at
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
-# The key of a spec: at the beginning of a line, or of a mapping in one line.
+# The key of a spec: at the beginning of a line, or of a mapping in one line; indented if quoted.
 _KIND = re.compile(
-    rf"^(?:\ufeff|\{{)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w-])", re.MULTILINE
+    rf"^\ufeff?(?:\s*\{{?\s*(?=[\"'])|\{{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w./-])",
+    re.MULTILINE,
 )
 
 

@@ -193,7 +193,7 @@ def read_lock_if_any(file: Path) -> Lock:
 
 def read_lock(file: Path) -> Lock:
     """Read a lock file; a missing, foreign or oversized one is a `CertificateError`."""
-    remedy = "remove it, and make it anew with nrs-design gate, without --locked"
+    remedy = "take it as it was committed, or make it anew with nrs-design gate over all specs"
     refused = partial(CertificateError, path=file, remedy=remedy)
     try:
         with open_regular(file) as stream:

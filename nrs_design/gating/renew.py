@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from operator import attrgetter
 from pathlib import Path
 
 from nrs_design import __version__
-from nrs_design.errors import OutputError
+from nrs_design.certificates.prove import read_document
+from nrs_design.errors import CertificateError, OutputError
 from nrs_design.gating.lock import (
     DECIDED_AGAIN,
     Lock,
@@ -45,6 +47,8 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
     with alone_in(file.parent):
+        for spec in outcome.specs:
+            _check_kept(spec)
         fresh = make_lock(outcome.specs, file).specs
         # A spec that is gone keeps its entry.
         present = (spec for spec in outcome.specs if is_there(spec.path))
@@ -78,6 +82,21 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         if paths:
             outcome = outcome.with_note(f"{text}: {', '.join(sorted(paths))}")
     return outcome
+
+
+def _check_kept(spec: SpecOutcome) -> None:
+    """Refuse to lock a certificate that another run has replaced since it was written."""
+    if spec.certificate is None:
+        return
+    with suppress(CertificateError):
+        if read_document(spec.certificate).get("id") == spec.certificate_id:
+            return
+    raise OutputError(
+        "is no longer the certificate that this run has written, so nothing is locked: another run "
+        "works in this tree",
+        path=spec.certificate,
+        remedy="let it end, then run nrs-design gate again",
+    )
 
 
 def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:

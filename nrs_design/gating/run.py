@@ -6,6 +6,7 @@ other last digits of the same proof.
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -14,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design import __version__
 from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
 
+_SEAL = "<!-- "
 _Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 
@@ -247,10 +250,19 @@ def _judge_scenarios(
 
 
 def _is_of(page: Path, certificate: Certificate | None) -> bool:
-    """Tell whether a page is not there, or names this certificate: to draw it anew takes long."""
+    """Tell whether a page is not there, or is as this program drew it of this certificate.
+
+    To draw it anew takes long.
+    """
     if not page.exists() or certificate is None:
         return not page.exists()
-    return certificate.id.encode() in page.read_bytes()
+    body, _, seal = page.read_text(encoding="utf-8", errors="replace").rpartition(_SEAL)
+    return certificate.id in body and seal == _seal(body)
+
+
+def _seal(body: str) -> str:
+    """Return the end of a page: what shows that nobody has changed it."""
+    return f"{hashlib.sha256(f'{__version__}{body}'.encode()).hexdigest()} -->\n"
 
 
 def _write_page(
@@ -261,4 +273,4 @@ def _write_page(
 
     origin = origin_of(result.loaded.path, page)
     html = render_html(build_report(result, analysis, blocked=blocked), origin)
-    write_output(page, html, replaces=PAGE)
+    write_output(page, f"{html}{_SEAL}{_seal(html)}", replaces=PAGE)

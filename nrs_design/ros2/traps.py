@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from nrs_design.gating.obligations import Caution
 from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
+from nrs_design.ros2.parameters import RosNode, texts
 
 # The default share of the new sample, and all that smooth the force as long.
 SLOW = Fraction(1, 20)
@@ -34,6 +35,14 @@ def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
 def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _damping(law)
     yield from _filter(law)
+    masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
+    if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
+        yield Trap(
+            "admittance.mass",
+            "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
+            "frame, as stiffness and damping do; before, along those of the base, so axes are "
+            "coupled wherever the two frames are turned, which no verdict here covers",
+        )
     if law.values[RETUNING][0]:
         said = "is on" if RETUNING in law.node.values else "is on by default"
         yield Trap(
@@ -48,6 +57,16 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
             "launch file gives what this one does not",
         )
     yield from _unknown(law)
+
+
+def _same_frame(node: RosNode) -> bool:
+    """Tell whether the control frame is the base."""
+    frames = [
+        texts(node.values[name]) if name in node.values else None
+        for name in ("control.frame.id", "kinematics.base")
+    ]
+    names = [listed[0].text for listed in frames if listed]
+    return len(names) == len(frames) and names[0] == names[1]
 
 
 def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:

@@ -15,6 +15,8 @@ from nrs_design.spec.quantity import is_less
 
 # So near given gains are to the loop that is asked for: less is rounding.
 _NEAR = 0.05
+# Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
+_HARDEST = 10
 
 
 def _doubted(spec: Spec) -> Iterator[tuple[Location, str]]:
@@ -43,6 +45,24 @@ def _older(spec: Spec) -> tuple[str, str] | None:
     if delay is None or sampling is None or sampling.oldest >= delay.exact:
         return None
     return delay.text, rounded_up(sampling.oldest, "s")
+
+
+def _late_threshold(spec: Spec) -> Iterator[tuple[object, ...]]:
+    """Yield thresholds that the torque reaches only where it is too large already."""
+    logic = spec.mode_logic
+    limit = spec.limits.torque
+    for index, switch in enumerate(() if logic is None else logic.switches, 1):
+        above = None if switch.torque is None else switch.torque.above
+        if above is not None and above.not_below > limit.not_above:
+            yield index, switch.source, switch.target, above.text, limit.text
+
+
+def _hard(spec: Spec) -> tuple[str, str] | None:
+    """Return a wanted force that is out of proportion: some more than the limit is the very use."""
+    force, limit = getattr(spec.goals, "initial_force", None), spec.limits.torque
+    if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
+        return None
+    return force.text, limit.text
 
 
 def _left(spec: Spec) -> tuple[str, str] | None:
@@ -128,4 +148,19 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
     *map(partial(_unproved, has.LOSABLE), (has.OTHERS, has.MEMORY)),
     *map(partial(_unproved, has.COMMAND), (has.OTHERS, has.MEMORY, has.SPRUNG)),
     _unproved(has.RESTLESS, has.SPRUNG),
+    Row(
+        "mode_logic.switches",
+        _late_threshold,
+        "switch {0} of the mode logic, from {1} to {2}, waits for a torque of {3}, above "
+        "limits.torque of {4}",
+        "lower the threshold by noise and by what the torque moves in its age",
+    ),
+    Row(
+        "goals.initial_force",
+        _hard,
+        f"goals.initial_force of {{0}} is more than {_HARDEST} times limits.torque of {{1}}: is "
+        "that its unit?",
+        "what is shown is that motions from there decay, not that the torque is within its limit; "
+        "write `largest` for as much as is found",
+    ),
 )

@@ -197,6 +197,11 @@ def _undeclared(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str,
                     yield ("modes", index, "A", i, j), (name, meant)
 
 
+def _unused(spec: SwitchedSystemSpec) -> Iterator[str]:
+    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
+    return (name for name in spec.parameters if name not in used)
+
+
 def _corners(spec: SwitchedSystemSpec) -> int:
     return sum(2 ** len(mode.parameters) for mode in spec.modes)
 
@@ -250,6 +255,7 @@ def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[Transition, Locatio
 SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
     refuse(_renamed, "another mode is named {0!r}", "rename it"),
     refuse(_undeclared, "{0!r} is not a number, and there is no parameter of that name", "{1}"),
+    Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
     short_denominator(
         "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
     ),

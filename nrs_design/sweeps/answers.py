@@ -50,7 +50,7 @@ def read_answers(file: Path) -> dict[tuple[str, ...], PointAnswer]:
                 said = json.loads(line)
                 values, code, key = tuple(map(str, said["values"])), int(said["code"]), said["key"]
                 result, certificate = dict(said["result"]), str(said["certificate"])
-            except (ValueError, LookupError, TypeError, RecursionError):
+            except (ValueError, LookupError, TypeError, OverflowError, RecursionError):
                 continue
             found[values] = PointAnswer(values, code, key, result, certificate)
     return found

@@ -157,6 +157,8 @@ def test_proved_is_used_again_only_with_a_certificate_that_holds(tmp_path, spec)
         {"certificate": forged(certificate, indefinite)},
         {"certificate": forged(certificate, of_another_spec)},
         {"code": 1},
+        {"code": 77},
+        {"result": {}, "certificate": ""},
         {"result": result | {"decay_rate": 2 * result["decay_rate"]}},
         {"result": result | {"margin": {"proved_scale": 2.0}}},
         {"result": {k: v for k, v in result.items() if k != "verdict"}},

@@ -30,6 +30,22 @@ def test_a_remark_on_a_value_without_bound_reads_back(project):
     assert remark == LockedRemark(message="Ms unbounded", at=["controllers", "a"], beyond=1e6)
 
 
+def test_what_another_run_has_replaced_is_not_locked(project):
+    """Two runs in one tree: the certificate on the disk must be the one that is locked."""
+    outcome = outcome_of(project, STABLE_SPEC)
+    lock, file = project / "nrs.lock", project / "reports/stable.cert.json"
+    before, ours = lock.read_bytes(), file.read_text()
+    file.write_text(ours.replace(outcome.specs[0].certificate_id, 64 * "0"))
+    for _ in range(2):
+        with pytest.raises(OutputError, match=r"nothing is locked: another run works in this tree"):
+            write_lock(outcome, lock)
+        assert lock.read_bytes() == before
+        file.unlink(missing_ok=True)
+    file.write_text(ours)
+    write_lock(outcome, lock)
+    assert lock.read_bytes() == before
+
+
 def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
     """What was locked in between would be lost."""
     lock = project / "nrs.lock"

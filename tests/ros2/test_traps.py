@@ -25,6 +25,7 @@ def test_the_example_has_none():
     [
         (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0", "takes away the damping of axis x", 32),
         (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0", "which acts like 25 N*s/m", 32),
+        ("mass: [5.0, ", "mass: [6.0, ", "masses differ", 30),
         ("damping_ratio: [2.8,", "damping_ratio: [-2.8,", "negative for axis x", 31),
         ("update_without_reactivation: false", "update_without_reactivation: true", "is on:", 34),
         ("filter_coefficient: 0.5", "filter_coefficient: 0.0", "no share of the new sample", 22),
@@ -37,6 +38,18 @@ def test_the_example_has_none():
 def test_each_at_its_place(tmp_path, old, new, message, line):
     found = [trap for trap in traps(changed(tmp_path, (old, new))) if message in trap.message]
     assert [trap.line for trap in found] == [line]
+
+
+def test_the_frame_of_masses_depends_on_the_release(tmp_path):
+    """ros2_controllers 6.4.0 (pull request 1139): along the control frame; before, the base."""
+    masses = ("mass: [5.0, ", "mass: [6.0, ")
+    (found,) = traps(changed(tmp_path, masses))
+    assert "since ros2_controllers 6.4.0 they act along the axes of the control frame" in (
+        found.message
+    )
+    assert "before, along those of the base" in found.message
+    one = ("control: {frame: {id: tool0}}", "control: {frame: {id: base_link}}")
+    assert traps(changed(tmp_path, masses, one)) == []
 
 
 def test_defaults_are_said(tmp_path):

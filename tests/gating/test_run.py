@@ -156,7 +156,7 @@ def test_a_page_of_another_certificate_is_drawn_again(tmp_path, drawn, page):
 
 def test_a_page_that_somebody_changed_is_drawn_again(tmp_path, drawn, page):
     (tmp_path / "reports/given.html").write_bytes(page.replace(b"Proved", b"Proved for all"))
-    assert drawn() == (True, page)
+    assert [drawn()[0], drawn()[0]] == [True, False]
 
 
 def test_what_is_recorded_and_fulfilled_has_no_page_unless_all_are_asked_for(tmp_path, drawn, page):

@@ -79,24 +79,28 @@ def separating(P: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     """Return the sum of the matrices of the modes' own norms, each of trace two."""
-    forms = [own_norm(A, time) for A in matrices]
-    return np.asarray(np.sum([2 * P / np.trace(P) for P in forms], axis=0))
+    P = own_norms(matrices, time)
+    return np.asarray((2 * P / np.trace(P, axis1=1, axis2=2)[:, None, None]).sum(axis=0))
 
 
-def own_norm(A: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
-    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (n, n)."""
-    n, identity = len(A), np.eye(len(A))
+def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (m, n, n)."""
+    m, n = matrices.shape[:2]
+    identity, back = np.eye(n), np.swapaxes(matrices, 1, 2)
     if n > DENSE_ORDER:
         from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
 
         if time is Time.CONTINUOUS:
-            P = solve_continuous_lyapunov(A.T, -identity)
+            P = np.array([solve_continuous_lyapunov(A, -identity) for A in back])
         else:
-            P = solve_discrete_lyapunov(A.T, identity, method="bilinear")
-        return np.asarray((P + P.T) / 2)
-    if time is Time.CONTINUOUS:
-        operator = np.kron(A.T, identity) + np.kron(identity, A.T)
+            P = np.array([solve_discrete_lyapunov(A, identity, "bilinear") for A in back])
     else:
-        operator = np.kron(A.T, A.T) - np.eye(n * n)
-    P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
-    return np.asarray((P + P.T) / 2)
+        sides = (back, back) if time is Time.DISCRETE else (back, identity)
+        whole = np.einsum("...ik,...jl->...ijkl", *sides)
+        whole = np.broadcast_to(whole, (m, n, n, n, n))
+        if time is Time.CONTINUOUS:
+            whole = whole + whole.transpose(0, 2, 1, 4, 3)
+        operator = whole.reshape(m, n * n, n * n) - (time is Time.DISCRETE) * np.eye(n * n)
+        P = np.linalg.solve(operator, np.full((m, n * n, 1), -identity.reshape(-1, 1)))
+        P = P.reshape(m, n, n)
+    return np.asarray((P + np.swapaxes(P, 1, 2)) / 2)

@@ -21,7 +21,7 @@ from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
-from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
+from nrs_design.search.balance import own_norms, round_coordinates, scale_states, separating
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
 from nrs_design.search.family import Family, limit_rate, to_floats
@@ -193,7 +193,7 @@ def _draw(
     def coordinates(own: Array, rate: float) -> FormCoordinates:
         mean = own.mean(axis=0)
         kept = mean / max(rate, limit_rate(mean[None], Time.DISCRETE) / KEPT)
-        return FormCoordinates(family.exponents, apart(own_norm(kept, Time.DISCRETE)))
+        return FormCoordinates(family.exponents, apart(own_norms(kept[None], Time.DISCRETE)[0]))
 
     forms = tuple(k for k in clock.kinds for _ in places)
     drawn = tuple(map(coordinates, parts, rates))

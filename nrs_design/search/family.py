@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,7 +94,9 @@ def rate_limit(system: SwitchedSystem) -> float | None:
     modes = [part.lasting_modes() for part in parts]
     if not all(modes):
         return None
-    limits = [limit_rate(to_floats([m.A]), system.time) for part in modes for m in part]
+    every = sorted((m.A for part in modes for m in part), key=lambda A: A.shape[0])
+    alike = (to_floats([*group]) for _, group in groupby(every, lambda A: A.shape[0]))
+    limits = [limit_rate(matrices, system.time) for matrices in alike]
     limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
     return limit if np.isfinite(limits).all() else None
 

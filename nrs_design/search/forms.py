@@ -33,7 +33,14 @@ from nrs_design.search.drawing import (
 )
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
-from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, packed_congruence, unpack
+from nrs_design.search.sdp import (
+    STEPS,
+    SemidefiniteProgram,
+    pack,
+    packed_columns,
+    packed_congruence,
+    unpack,
+)
 from nrs_design.search.stays import enough_pieces
 from nrs_design.work import Allowance
 
@@ -44,6 +51,11 @@ Indices = NDArray[np.int64]
 FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
+# Work for the first edges from which on a general solver is not asked, nor for one form: to load it
+# takes longer than to find that. Our own method takes more edges at once, and is content with less
+# of those outside. It begins with multipliers of this size, or at this share of what it found last.
+DEAR, FIRST_OF_DEAR, BARELY = 0.05, 64, 0.1
+START_MULTIPLIER, BACK = 0.1, 0.7
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
 LARGEST_MULTIPLIER = 64.0
 # Forms reach up to the identity where there are any; all of them below this are zero.
@@ -88,6 +100,22 @@ class FormsProgram:
             given = np.array([mode.A.floats() for mode in drawing.system.modes])
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
+        self._last: Array | None = None  # What our own method found last
+        self.is_dear = self._is_dear()
+        if self.is_dear and len(self.sizes) > 1:
+            self.active = _spaced(count, max(few, min(count, FIRST_OF_DEAR)))
+
+    def _is_dear(self) -> bool:
+        """Tell whether our own method is faster than a general solver.
+
+        It begins where every inequality has room, and knows quadratic forms only.
+        """
+        if self.degree > 1 or not all(edge.is_strict for edge in self.edges):
+            return False
+        program = self._program(self.active, rate_at(0.0, 1.0, self.time))
+        whole = program.cost().work
+        faster = STEPS * program.cost_of_own().work < whole
+        return len(self.sizes) == 1 or (whole > DEAR and faster)
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -123,7 +151,8 @@ class FormsProgram:
                 return solution
             margins, known = self.margins(solution, rate), set(self.active)
             strict = np.array([edge.is_strict for edge in self.edges])
-            enough = NEARLY_ALL * min((margins[k] for k in known if strict[k]), default=0.0)
+            share = BARELY if self.is_dear else NEARLY_ALL
+            enough = share * min((margins[k] for k in known if strict[k]), default=0.0)
             tight = ~(margins > np.where(strict, max(enough, 0.0), 0.0))
             added = [k for k in np.argsort(margins) if tight[k] and k not in known]
             if not added:
@@ -133,8 +162,17 @@ class FormsProgram:
     def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
-        """Solve for some of the edges; None if there is no margin."""
-        found = self._program(active, rate).maximize(allowance)
+        """Solve for some of the edges; None if there is no margin.
+
+        Our own method goes on from where the last one ended, if it ended.
+        """
+        program = self._program(active, rate)
+        if self.is_dear:
+            y = program.improve(self._start(program.unknowns), allowance)
+            if y is not None:
+                self._last = y if y[-1] > 0 else self._last
+                return self._read(y, rate)
+        found = program.maximize(allowance)
         return None if found is None else self._read(found.x, rate)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
@@ -148,6 +186,38 @@ class FormsProgram:
             return None
         own = found.duals[len(found.duals) - len(self.active) :]
         return DualSolution(solution, dict(zip(self.active, own, strict=True)))
+
+    def _start(self, unknowns: int) -> Array:
+        """Return forms and multipliers inside their bounds, and their margin if it is known."""
+        if self._last is not None:
+            return BACK * self._last
+        y = np.zeros(unknowns)
+        halves = [pack(np.eye(n) / 2) for n in self.sizes]
+        y[: self._starts[-1]] = np.concatenate(halves)
+        y[self._starts[-1] : -1] = START_MULTIPLIER
+        return y
+
+    @cached_property
+    def _kinds(self) -> list[tuple[list[int], Inequality]]:
+        """Put edges together that differ in their numbers alone: which, and a stack of them."""
+        groups: dict[object, list[int]] = {}
+        for k, edge in enumerate(self.edges):
+            entries = edge.kept.tobytes(), edge.left.tobytes(), edge.M.shape
+            timing = edge.is_flow, edge.lasts, edge.is_strict, edge.share
+            facts = tuple(fact for fact, _ in edge.facts)
+            own = k if self.degree > 1 else None
+            key = edge.before, edge.after, entries, timing, facts, own
+            groups.setdefault(key, []).append(k)
+        found = []
+        for members in groups.values():
+            first, edges = self.edges[members[0]], [self.edges[k] for k in members]
+            facts_of = tuple(
+                (fact, np.array([edge.facts[i][1] for edge in edges]))
+                for i, (fact, _) in enumerate(first.facts)
+            )
+            M = np.array([edge.M for edge in edges])
+            found.append((members, replace(first, M=M, facts=facts_of)))
+        return found
 
     @cached_property
     def _starts(self) -> list[int]:
@@ -212,12 +282,15 @@ class FormsProgram:
         forms = [unpack(part, n) for part, n in zip(packed, self.sizes, strict=True)]
         if x[-1] <= 0 or max(np.abs(Q).max() for Q in forms) < NOTHING:
             return None
+        multipliers, free = np.split(rest, [len(self.scales)])
+        share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
+        if self.degree == 1:
+            return replace(self.solution_of(forms), multipliers=share * multipliers)
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
             1.0 if edge.is_flow else 1 / f
             for edge, f in zip(self.edges, self.factors(rate), strict=True)
         ]
-        multipliers, free = np.split(rest, [len(self.scales)])
         # Where forms vanish, all edges are active.
         counts = np.cumsum([len(basis) for basis in self._vanishing])[:-1]
         vanishing = [
@@ -226,7 +299,6 @@ class FormsProgram:
                 keeps, np.split(free, counts), self._vanishing, strict=True
             )
         ]
-        share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         return Solution(forms, share * multipliers, vanishing)
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
@@ -256,24 +328,24 @@ class FormsProgram:
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
         return [every[k] for k in first]
 
-    def solution_of(self, Q: Array) -> Solution:
-        """Return a form for all modes, however it was found, as a solution."""
-        return Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
+    def solution_of(self, forms: list[Array]) -> Solution:
+        """Return quadratic forms, however they were found, as a solution without facts."""
+        return Solution(forms, np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
 
     def margins(self, solution: Solution, rate: float) -> Array:
         """Return the smallest eigenvalue of every inequality; it may be a little below zero.
 
         That is where a form need not decrease.
         """
-        margins = []
-        for edge, N in zip(self.edges, solution.vanishing, strict=True):
+        margins = np.zeros(len(self.edges))
+        for members, edge in self._kinds:
             slack = 0.0
             if not edge.is_strict:
                 Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
                 slack = SLACK * np.abs(Q).max()
-            form = self.decrease(edge, solution, N, rate)
-            margins.append(float(np.linalg.eigvalsh(form)[0]) + slack)
-        return np.array(margins)
+            form = self.decrease(edge, solution, solution.vanishing[members[0]], rate)
+            margins[members] = np.linalg.eigvalsh(form)[:, 0] + slack
+        return margins
 
     def own_rate(self, solution: Solution) -> float:
         """Return the rate that a solution shows where every edge is a flow or some steps.
@@ -281,14 +353,15 @@ class FormsProgram:
         A form that is not positive definite shows mere stability at most.
         """
         rates, stable = list[float](), rate_at(0.0, 1.0, self.time)
-        for edge, N in zip(self.edges, solution.vanishing, strict=True):
-            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+        for members, edge in self._kinds:
+            Q, N = solution.forms[edge.before], solution.vanishing[members[0]]
+            Q = Q[np.ix_(edge.kept, edge.kept)]
             try:
                 inverse = np.linalg.inv(np.linalg.cholesky(Q))
             except np.linalg.LinAlgError:
                 return stable
             form = inverse @ self._form(edge, solution, N) @ inverse.T
-            least = float(np.linalg.eigvalsh(form)[0])
+            least = float(np.linalg.eigvalsh(form)[:, 0].min())
             if edge.is_flow:
                 rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
             elif edge.lasts:

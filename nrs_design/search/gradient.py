@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
+from nrs_design.search.balance import mean_norm, own_norms, round_coordinates
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
@@ -67,7 +67,7 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
 
 def _roundings(family: Family, Q: Matrices, words: str) -> Iterator[Candidate[FormsOnGraph]]:
     program = FormsProgram(draw_balanced(family))
-    yield from at_own_rate(program, program.solution_of(Q), family, digits(), words)
+    yield from at_own_rate(program, program.solution_of([Q]), family, digits(), words)
 
 
 def find_by_gradient(family: Family) -> GradientResult:
@@ -127,7 +127,7 @@ def iterate_gradient(
     mode, `start`. The coordinates are those of the matrices.
     """
     allowance, m = allowance or Allowance(), len(matrices)
-    Q = own_norm(matrices[start], time)
+    Q = own_norms(matrices[start, None], time)[0]
     order, fulfilled, updates = _order(m, settings), set[int](), 0
     teller = _Teller(settings, matrices, time)
     teller.tell(Q, updates)

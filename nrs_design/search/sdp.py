@@ -6,7 +6,7 @@ takes to solve it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.search import interior_point
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -33,6 +34,9 @@ MOST_STEPS = 200
 # Bytes for each entry of the dense constraints (with the copies), and of the factors.
 BYTES_PER_ENTRY = 24
 BYTES_PER_FACTOR_ENTRY = 20
+# Our own method is not begun if fewer steps fit. It starts below the margin of the first point by
+# at least this, or by so many of the margins of what was found for other numbers.
+FEWEST_STEPS, START_FLOOR, WARM = 4, 1e-3, 100.0
 
 
 def symmetric_basis(n: int) -> Array:
@@ -137,6 +141,16 @@ class Maximum:
     duals: list[Array]  # How much a unit of each block adds to the margin
 
 
+@dataclass(frozen=True, slots=True)
+class Block:
+    """What must be positive semidefinite, packed."""
+
+    order: int
+    constant: Array  # Shape (s,)
+    unknowns: NDArray[np.int64]  # Those that it depends on, shape (k,)
+    images: Array  # Shape (s, k)
+
+
 class SemidefiniteProgram:
     """Make the last unknown as large as all blocks stay positive semidefinite with.
 
@@ -145,27 +159,63 @@ class SemidefiniteProgram:
 
     def __init__(self, unknowns: int) -> None:
         self.unknowns = unknowns
-        self._offsets, self._count = list[Array](), 0
-        self._sizes, self._columns = list[int](), list[NDArray[np.int64]]()
-        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
+        self._blocks = list[Block]()
 
-    def add(self, constant: Array, images: Iterable[tuple[int, Array]]) -> None:
+    def add(self, constant: Array, images: Sequence[tuple[int, Array]]) -> None:
         """Add a block: its constant, and packed forms of unknowns as columns, from a first one."""
-        columns = list[NDArray[np.int64]]()
-        for first, image in images:
-            row, column = np.nonzero(image)
-            self._entries.append((-image[row, column], self._count + row, first + column))
-            columns.append(first + column)
-        self._offsets.append(pack(constant))
-        self._sizes.append(len(constant))
-        self._columns.append(np.unique(np.concatenate(columns)))
-        self._count += len(self._offsets[-1])
+        places = [np.arange(first, first + image.shape[1]) for first, image in images]
+        unknowns = np.unique(np.concatenate(places))
+        offset = pack(constant)
+        whole = np.zeros((len(offset), len(unknowns)))
+        for place, (_, image) in zip(places, images, strict=True):
+            whole[:, np.searchsorted(unknowns, place)] += image
+        used = whole.any(axis=0)
+        self._blocks.append(Block(len(constant), offset, unknowns[used], whole[:, used]))
 
     def cost(self) -> Cost:
         """Predict what a solution takes: unknowns of one block alone are eliminated with it."""
-        blocks = np.bincount(np.concatenate(self._columns), minlength=self.unknowns)
-        cones = zip(self._sizes, map(len, self._columns), strict=True)
-        return program_cost(self.unknowns, int((blocks > 1).sum()), cones)
+        every = np.concatenate([block.unknowns for block in self._blocks])
+        shared = np.bincount(every, minlength=self.unknowns) > 1
+        cones = ((block.order, len(block.unknowns)) for block in self._blocks)
+        return program_cost(self.unknowns, int(shared.sum()), cones)
+
+    def _alike(self) -> list[list[Block]]:
+        """Group blocks of one size in which the same unknowns enter."""
+        groups: dict[object, list[Block]] = {}
+        for block in self._blocks:
+            groups.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
+        return list(groups.values())
+
+    def cost_of_own(self) -> Cost:
+        """Predict what a step of our own method takes."""
+        groups = self._alike()
+        sizes = [(len(own), own[0].order, len(own[0].unknowns)) for own in groups]
+        return interior_point.cost(self.unknowns, sizes)
+
+    def improve(self, start: Array, allowance: Allowance) -> Array | None:
+        """Make the last unknown positive by our own method, and large up to a share of itself.
+
+        It is taken from the diagonals of some blocks, in which nothing else is negative. None if
+        floating point did not suffice to tell whether it can be positive.
+        """
+        step, y = self.cost_of_own(), start.copy()
+        what = f"a program of {self.unknowns} unknowns and {len(self._blocks)} blocks"
+        allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
+        groups = [
+            interior_point.Group(
+                own[0].unknowns,
+                unpack(np.array([block.constant for block in own]), own[0].order),
+                unpack(np.array([block.images.T for block in own]), own[0].order),
+            )
+            for own in self._alike()
+        ]
+        margin, y[-1] = y[-1], 0.0
+        counting = [own.at(y) for own in groups if own.unknowns[-1] == self.unknowns - 1]
+        least = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)
+        below = max(0.1 * max(float(np.abs(X).max()) for X in counting), START_FLOOR)
+        y[-1] = least - (min(below, WARM * margin) if margin > 0 else below)
+        y, decided = interior_point.maximize(groups, y, lambda: allowance.goes_on(step.work))
+        return y if decided else None
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
         """Return what the solver returned, whatever its status; None if that is not finite.
@@ -174,22 +224,27 @@ class SemidefiniteProgram:
         """
         import clarabel
 
-        cost, count = self.cost(), self.unknowns
-        allowance.take(cost, f"a program of {count} unknowns and {len(self._sizes)} blocks")
+        cost, count, blocks = self.cost(), self.unknowns, self._blocks
+        allowance.take(cost, f"a program of {count} unknowns and {len(blocks)} blocks")
         more = allowance.left / cost.per_step
-        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
-        matrix = Sparse.of(values, rows, columns, (self._count, count))
+        first = np.cumsum([0, *(len(block.constant) for block in blocks)])
+        entries = list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]]()
+        for start, block in zip(first, blocks, strict=False):
+            row, column = np.nonzero(block.images)
+            entries.append((-block.images[row, column], start + row, block.unknowns[column]))
+        values, rows, columns = (np.concatenate(part) for part in zip(*entries, strict=True))
+        matrix = Sparse.of(values, rows, columns, (int(first[-1]), count))
         objective, none = np.zeros(count), np.zeros(0)
         objective[-1] = -1.0
         quadratic = Sparse.of(none, none, none, (count, count))
-        cones = [clarabel.PSDTriangleConeT(n) for n in self._sizes]
+        cones = [clarabel.PSDTriangleConeT(block.order) for block in blocks]
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
         settings.max_iter = STEPS + int(min(more, MOST_STEPS - STEPS))
         settings.time_limit = allowance.fuse.left
-        given = quadratic, objective, matrix, np.concatenate(self._offsets), cones
+        given = quadratic, objective, matrix, np.concatenate([b.constant for b in blocks]), cones
         solution = clarabel.DefaultSolver(*given, settings).solve()
         if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
             # It fails at once on a few programs that it has scaled, and solves them unscaled.
@@ -199,9 +254,8 @@ class SemidefiniteProgram:
         x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
         if x.shape != (count,) or not (np.isfinite(x).all() and np.isfinite(z).all()):
             return None
-        ends = np.cumsum([n * (n + 1) // 2 for n in self._sizes])[:-1]
-        duals = zip(np.split(z, ends), self._sizes, strict=True)
-        return Maximum(x, [unpack(part, n) for part, n in duals])
+        duals = zip(np.split(z, first[1:-1]), blocks, strict=True)
+        return Maximum(x, [unpack(part, block.order) for part, block in duals])
 
 
 def packed_columns(forms: Array) -> Array:

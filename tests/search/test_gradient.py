@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import own_norm
+from nrs_design.search.balance import own_norms
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
@@ -68,7 +68,7 @@ def test_one_update_by_hand(time):
     told = []
     settings = Gradient(1.9, 0.3, max_updates=1, tell=lambda *step: told.append(step))
     iterate_gradient(matrices, time, settings, 1)
-    Q, A = own_norm(matrices[1], time), matrices[0]
+    Q, A = own_norms(matrices[1:2], time)[0], matrices[0]
     half = Q @ A
     excess = half + half.T if time is Time.CONTINUOUS else A.T @ Q @ A - Q
     values, vectors = np.linalg.eigh(excess + np.eye(2))

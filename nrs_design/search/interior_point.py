@@ -1,0 +1,172 @@
+"""A primal-dual interior-point method for quadratic forms on a graph (untrusted).
+
+A general solver is given an inequality as that many linear equations as it has entries, and
+factors them all; it has to be loaded, and goes for the optimum. Here blocks in which the same
+unknowns enter are handled at once, what is left to solve are the equations of the unknowns alone,
+and a good point is enough. For 20 states and some thirty modes that takes a tenth of the time.
+
+Directions of Nesterov and Todd with the predictor and corrector of Mehrotra (Toh, Todd, Tütüncü
+1999; Vandenberghe 2010).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.work import Cost
+
+Array = NDArray[np.float64]
+
+MAX_STEPS = 60
+# Share of the way to the border of the cones that a step goes.
+STEP_SHARE = 0.95
+# The last unknown is found to this share of itself; if no point is known with a positive one, it is
+# nil where its bound is below the second number, or below the third and no step is left.
+ACCURACY, NIL, NEARLY_NIL = 0.5, 1e-11, 1e-8
+# The equations of the optimum hold nearly enough for its bound to be believed.
+NEARLY_DUAL = 1e-6
+# Work per step, per group of blocks and per multiplication; bytes per entry.
+PER_STEP, PER_GROUP, PER_PRODUCT, BYTES_PER_ENTRY = 2e-4, 3e-4, 1e-10, 32
+
+
+@dataclass(frozen=True)
+class Group:
+    """Blocks of one size in which the same unknowns enter: ``X = C + sum of y_k F_k``."""
+
+    unknowns: NDArray[np.int64]
+    constants: Array  # Shape (b, s, s)
+    forms: Array  # Shape (b, k, s, s)
+
+    def at(self, y: Array) -> Array:
+        """Return all X."""
+        return np.asarray(self.constants + np.tensordot(self.forms, y[self.unknowns], (1, 0)))
+
+
+def cost(unknowns: int, groups: Sequence[tuple[int, int, int]]) -> Cost:
+    """Predict what a step takes; a group is so many blocks, of a size, and of some unknowns."""
+    products = unknowns**3 / 3
+    for b, s, k in groups:
+        products += b * k * (2 * s**3 + k * s**2)
+    entries = sum(b * k * s**2 for b, s, k in groups)
+    work = PER_STEP + PER_GROUP * len(groups) + PER_PRODUCT * products
+    return Cost(work, BYTES_PER_ENTRY * entries)
+
+
+def maximize(groups: Sequence[Group], y: Array, goes_on: Callable[[], bool]) -> tuple[Array, bool]:
+    """Make the last unknown positive, and large up to a share; tell whether that was decided.
+
+    All blocks are positive definite at the start. `goes_on` is asked before every step; No ends
+    the search with the last iterate.
+    """
+    X = [group.at(y) for group in groups]
+    Z = [np.asarray(np.linalg.inv(own)) for own in X]
+    counted = -_adjoint(groups, Z, len(y))[-1]
+    Z = [own / counted for own in Z]
+    bound = np.inf
+    for _ in range(MAX_STEPS):
+        if not goes_on():
+            return y, True
+        try:
+            dy, dZ, lacks = _step(groups, X, Z, len(y))
+        except np.linalg.LinAlgError:
+            break
+        y, Z = y + dy, [a + b for a, b in zip(Z, dZ, strict=True)]
+        X = [group.at(y) for group in groups]
+        if not all(np.isfinite(own).all() for own in (*X, *Z)):
+            break
+        gap = sum(float((a * b).sum()) for a, b in zip(X, Z, strict=True))
+        if lacks < NEARLY_DUAL:
+            bound = y[-1] + gap
+        if bound <= NIL or (y[-1] > 0 and gap <= ACCURACY * y[-1]):
+            return y, True
+    return y, bool(bound < NEARLY_NIL)
+
+
+def _adjoint(groups: Sequence[Group], Z: list[Array], count: int) -> Array:
+    """Return the product of every unknown's forms with matrices."""
+    result = np.zeros(count)
+    for group, own in zip(groups, Z, strict=True):
+        result[group.unknowns] += np.einsum("bkij,bij->k", group.forms, own)
+    return result
+
+
+def _step(
+    groups: Sequence[Group], X: list[Array], Z: list[Array], count: int
+) -> tuple[Array, list[Array], float]:
+    """Return the changes of y and Z, and by how much the equations of the optimum will fail.
+
+    Predictor and corrector, in coordinates in which X and Z are diagonal with the entries d.
+    """
+    W, d, scaled = list[Array](), list[Array](), list[Array]()
+    residual, gram = _adjoint(groups, Z, count), np.zeros((count, count))
+    residual[-1] += 1.0
+    for group, own, dual in zip(groups, X, Z, strict=True):
+        scale, entries = nesterov_todd(own, dual)
+        moved = scale[:, None] @ group.forms @ _transposed(scale)[:, None]
+        moved = np.swapaxes(moved, 0, 1).reshape(len(group.unknowns), -1)
+        gram[np.ix_(group.unknowns, group.unknowns)] += moved @ moved.T
+        W.append(scale)
+        d.append(entries)
+        scaled.append(moved)
+    inverse = np.linalg.inv(np.linalg.cholesky(gram))
+
+    def direction(target: list[Array]) -> tuple[Array, list[Array], list[Array]]:
+        """Return the changes of y, X and Z; those of X and Z add up to the target."""
+        force = residual.copy()
+        for group, moved, part in zip(groups, scaled, target, strict=True):
+            force[group.unknowns] += moved @ part.ravel()
+        dy = inverse.T @ (inverse @ force)
+        dX = [
+            (dy[group.unknowns] @ moved).reshape(part.shape)
+            for group, moved, part in zip(groups, scaled, target, strict=True)
+        ]
+        return dy, dX, [a - b for a, b in zip(target, dX, strict=True)]
+
+    D = [own[..., None] * np.eye(own.shape[-1]) for own in d]
+    _, dX, dZ = direction([-own for own in D])
+    first, second = _farthest(d, dX, 1.0), _farthest(d, dZ, 1.0)
+    gap, size = sum(float((own * own).sum()) for own in d), sum(own.size for own in d)
+    reached = sum(
+        float(((a + first * b) * (a + second * c)).sum()) for a, b, c in zip(D, dX, dZ, strict=True)
+    )
+    center = max(reached / gap, 0.0) ** 3 * gap / size
+    target = [
+        center / own[..., None] * np.eye(own.shape[-1])
+        - (b @ c + c @ b) / (own[..., None] + own[..., None, :])
+        - a
+        for own, a, b, c in zip(d, D, dX, dZ, strict=True)
+    ]
+    dy, dX, dZ = direction(target)
+    primal, back = _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE)
+    lacks = (1 - back) * float(np.abs(residual).max())
+    dZ = [back * (_transposed(own) @ part @ own) for own, part in zip(W, dZ, strict=True)]
+    return primal * dy, dZ, lacks
+
+
+def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
+    """Return W with ``W X W' = W^-T Z W^-1`` diagonal, and the diagonals.
+
+    A LinAlgError if X or Z, shape (blocks, n, n), is not positive definite in floating point.
+    """
+    L = np.linalg.cholesky(X)
+    R = np.linalg.cholesky((Z + _transposed(Z)) / 2)
+    _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
+    return np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L), d
+
+
+def _farthest(d: list[Array], change: list[Array], share: float) -> float:
+    """Return how far a step may go, one at most, as a share of the way to the border."""
+    steepest = share
+    for own, part in zip(d, change, strict=True):
+        root = np.sqrt(own)
+        relative = part / (root[..., None] * root[..., None, :])
+        steepest = max(steepest, float(-np.linalg.eigvalsh(relative)[..., 0].min()))
+    return share / steepest
+
+
+def _transposed(A: Array) -> Array:
+    return np.swapaxes(A, -1, -2)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 
-BACK_OFFS = (0.99995, 0.9998, 0.9995, 0.999, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
+BACK_OFFS = (0.99995, 0.9998, 0.9995, 0.999, 0.998, 0.996, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
 # Where a check takes long: so many rates, and every so many bits.
 FEW_RATES = 3

@@ -108,6 +108,13 @@ class Inequality:
         return self.share * float(rate ** (-2 * degree * self.lasts))
 
     @property
+    def kind(self) -> tuple[object, ...]:
+        """All but the numbers: which forms enter, and how."""
+        places = self.before, self.kept.tobytes(), self.after, self.left.tobytes()
+        facts = tuple(fact for fact, _ in self.facts)
+        return *places, facts, self.is_flow, self.lasts, self.is_strict, self.share
+
+    @property
     def size(self) -> int:
         """Number of entries of z."""
         return int(self.M.shape[1])
@@ -263,9 +270,7 @@ def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
     groups: dict[object, list[tuple[int, Array]]] = {}
     found = []
     for edge in edges:
-        facts = tuple(fact for fact, _ in edge.facts)
-        sizes = len(edge.kept), len(edge.left)
-        key = edge.before, edge.after, sizes, facts, edge.is_flow, edge.lasts, edge.is_strict
+        key = edge.kind
         numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
         near = NEARLY * np.abs(numbers).max(initial=0.0)
         # Edges that are near have nearly the same sum, so they are looked for in three places only.

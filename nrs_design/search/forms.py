@@ -31,6 +31,7 @@ from nrs_design.search.drawing import (
     inequalities,
     states_at,
 )
+from nrs_design.search.interior_point import maximize, step_cost
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
 from nrs_design.search.sdp import (
@@ -114,8 +115,8 @@ class FormsProgram:
             return False
         program = self._program(self.active, rate_at(0.0, 1.0, self.time))
         whole = program.cost().work
-        faster = STEPS * program.cost_of_own().work < whole
-        return len(self.sizes) == 1 or (whole > DEAR and faster)
+        own = STEPS * step_cost(program.groups, program.unknowns).work
+        return len(self.sizes) == 1 or own < whole > DEAR
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -168,7 +169,7 @@ class FormsProgram:
         """
         program = self._program(active, rate)
         if self.is_dear:
-            y = program.improve(self._start(program.unknowns), allowance)
+            y = maximize(program.groups, self._start(), allowance)
             if y is not None:
                 self._last = y if y[-1] > 0 else self._last
                 return self._read(y, rate)
@@ -187,27 +188,19 @@ class FormsProgram:
         own = found.duals[len(found.duals) - len(self.active) :]
         return DualSolution(solution, dict(zip(self.active, own, strict=True)))
 
-    def _start(self, unknowns: int) -> Array:
+    def _start(self) -> Array:
         """Return forms and multipliers inside their bounds, and their margin if it is known."""
         if self._last is not None:
             return BACK * self._last
-        y = np.zeros(unknowns)
         halves = [pack(np.eye(n) / 2) for n in self.sizes]
-        y[: self._starts[-1]] = np.concatenate(halves)
-        y[self._starts[-1] : -1] = START_MULTIPLIER
-        return y
+        return np.array([*np.concatenate(halves), *[START_MULTIPLIER] * len(self.scales), 0.0])
 
     @cached_property
     def _kinds(self) -> list[tuple[list[int], Inequality]]:
         """Put edges together that differ in their numbers alone: which, and a stack of them."""
         groups: dict[object, list[int]] = {}
         for k, edge in enumerate(self.edges):
-            entries = edge.kept.tobytes(), edge.left.tobytes(), edge.M.shape
-            timing = edge.is_flow, edge.lasts, edge.is_strict, edge.share
-            facts = tuple(fact for fact, _ in edge.facts)
-            own = k if self.degree > 1 else None
-            key = edge.before, edge.after, entries, timing, facts, own
-            groups.setdefault(key, []).append(k)
+            groups.setdefault((edge.kind, k if self.degree > 1 else None), []).append(k)
         found = []
         for members in groups.values():
             first, edges = self.edges[members[0]], [self.edges[k] for k in members]

@@ -11,13 +11,13 @@ Directions of Nesterov and Todd with the predictor and corrector of Mehrotra (To
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.work import Cost
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,9 @@ STEP_SHARE = 0.95
 ACCURACY, NIL, NEARLY_NIL = 0.5, 1e-11, 1e-8
 # The equations of the optimum hold nearly enough for its bound to be believed.
 NEARLY_DUAL = 1e-6
+# It is not begun if fewer steps than these fit. The start lies below the margin of its unknowns by
+# at least this, or by so many of the margins of what was found for other numbers.
+FEWEST_STEPS, START_FLOOR, WARM = 4, 1e-3, 100.0
 # Work per step, per group of blocks and per multiplication; bytes per entry.
 PER_STEP, PER_GROUP, PER_PRODUCT, BYTES_PER_ENTRY = 2e-4, 3e-4, 1e-10, 32
 
@@ -46,30 +49,37 @@ class Group:
         return np.asarray(self.constants + np.tensordot(self.forms, y[self.unknowns], (1, 0)))
 
 
-def cost(unknowns: int, groups: Sequence[tuple[int, int, int]]) -> Cost:
-    """Predict what a step takes; a group is so many blocks, of a size, and of some unknowns."""
-    products = unknowns**3 / 3
-    for b, s, k in groups:
-        products += b * k * (2 * s**3 + k * s**2)
-    entries = sum(b * k * s**2 for b, s, k in groups)
+def step_cost(groups: Sequence[Group], unknowns: int) -> Cost:
+    """Predict what a step takes."""
+    entries = [(group.forms.size, *group.forms.shape[1:3]) for group in groups]
+    products = unknowns**3 / 3 + sum(size * (2 * s + k) for size, k, s in entries)
     work = PER_STEP + PER_GROUP * len(groups) + PER_PRODUCT * products
-    return Cost(work, BYTES_PER_ENTRY * entries)
+    return Cost(work, BYTES_PER_ENTRY * sum(size for size, *_ in entries))
 
 
-def maximize(groups: Sequence[Group], y: Array, goes_on: Callable[[], bool]) -> tuple[Array, bool]:
-    """Make the last unknown positive, and large up to a share; tell whether that was decided.
+def maximize(groups: Sequence[Group], start: Array, allowance: Allowance) -> Array | None:
+    """Make the last unknown positive, and large up to a share of itself.
 
-    All blocks are positive definite at the start. `goes_on` is asked before every step; No ends
-    the search with the last iterate.
+    It is taken from the diagonals of some blocks, of which the start leaves something, perhaps so
+    much as it says, and nothing else is negative there. None if floating point did not suffice to
+    tell whether it can be positive.
     """
-    X = [group.at(y) for group in groups]
+    step, y, margin = step_cost(groups, len(start)), start.copy(), start[-1]
+    allowance.require(
+        Cost(FEWEST_STEPS * step.work, step.memory), f"a program of {len(y)} unknowns"
+    )
+    y[-1] = 0.0
+    counting = [group.at(y) for group in groups if group.unknowns[-1] == len(y) - 1]
+    least = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)
+    below = max(0.1 * max(float(np.abs(X).max()) for X in counting), START_FLOOR)
+    y[-1] = least - (min(below, WARM * margin) if margin > 0 else below)
+    X, bound = [group.at(y) for group in groups], np.inf
     Z = [np.asarray(np.linalg.inv(own)) for own in X]
     counted = -_adjoint(groups, Z, len(y))[-1]
     Z = [own / counted for own in Z]
-    bound = np.inf
     for _ in range(MAX_STEPS):
-        if not goes_on():
-            return y, True
+        if not allowance.goes_on(step.work):
+            return y
         try:
             dy, dZ, lacks = _step(groups, X, Z, len(y))
         except np.linalg.LinAlgError:
@@ -82,8 +92,8 @@ def maximize(groups: Sequence[Group], y: Array, goes_on: Callable[[], bool]) -> 
         if lacks < NEARLY_DUAL:
             bound = y[-1] + gap
         if bound <= NIL or (y[-1] > 0 and gap <= ACCURACY * y[-1]):
-            return y, True
-    return y, bool(bound < NEARLY_NIL)
+            return y
+    return y if bound < NEARLY_NIL else None
 
 
 def _adjoint(groups: Sequence[Group], Z: list[Array], count: int) -> Array:
@@ -105,7 +115,10 @@ def _step(
     residual, gram = _adjoint(groups, Z, count), np.zeros((count, count))
     residual[-1] += 1.0
     for group, own, dual in zip(groups, X, Z, strict=True):
-        scale, entries = nesterov_todd(own, dual)
+        L, R = np.linalg.cholesky(own), np.linalg.cholesky((dual + _transposed(dual)) / 2)
+        _, entries, Vt = np.linalg.svd(_transposed(R) @ L)
+        # X as ``scale X scale'``, and Z by the inverse.
+        scale = np.sqrt(entries)[..., None] * Vt @ np.linalg.inv(L)
         moved = scale[:, None] @ group.forms @ _transposed(scale)[:, None]
         moved = np.swapaxes(moved, 0, 1).reshape(len(group.unknowns), -1)
         gram[np.ix_(group.unknowns, group.unknowns)] += moved @ moved.T
@@ -147,17 +160,6 @@ def _step(
     return primal * dy, dZ, lacks
 
 
-def nesterov_todd(X: Array, Z: Array) -> tuple[Array, Array]:
-    """Return W with ``W X W' = W^-T Z W^-1`` diagonal, and the diagonals.
-
-    A LinAlgError if X or Z, shape (blocks, n, n), is not positive definite in floating point.
-    """
-    L = np.linalg.cholesky(X)
-    R = np.linalg.cholesky((Z + _transposed(Z)) / 2)
-    _, d, Vt = np.linalg.svd(np.swapaxes(R, -1, -2) @ L)
-    return np.sqrt(d)[..., None] * Vt @ np.linalg.inv(L), d
-
-
 def _farthest(d: list[Array], change: list[Array], share: float) -> float:
     """Return how far a step may go, one at most, as a share of the way to the border."""
     steepest = share
@@ -168,5 +170,5 @@ def _farthest(d: list[Array], change: list[Array], share: float) -> float:
     return share / steepest
 
 
-def _transposed(A: Array) -> Array:
-    return np.swapaxes(A, -1, -2)
+def _transposed(A: NDArray[np.floating]) -> Array:
+    return np.asarray(np.swapaxes(A, -1, -2), dtype=float)

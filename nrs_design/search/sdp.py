@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search import interior_point
+from nrs_design.search.interior_point import Group
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -34,9 +33,6 @@ MOST_STEPS = 200
 # Bytes for each entry of the dense constraints (with the copies), and of the factors.
 BYTES_PER_ENTRY = 24
 BYTES_PER_FACTOR_ENTRY = 20
-# Our own method is not begun if fewer steps fit. It starts below the margin of the first point by
-# at least this, or by so many of the margins of what was found for other numbers.
-FEWEST_STEPS, START_FLOOR, WARM = 4, 1e-3, 100.0
 
 
 def symmetric_basis(n: int) -> Array:
@@ -108,32 +104,6 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
 
 
 @dataclass(frozen=True, slots=True)
-class Sparse:
-    """A matrix by columns, as Clarabel reads it; to load SciPy for it takes longer than a solve."""
-
-    data: Array
-    indices: NDArray[np.int32]  # Rows of the entries, in order in each column
-    indptr: NDArray[np.int32]  # Where columns begin
-    shape: tuple[int, int]
-    has_canonical_format: bool = True
-
-    @property
-    def nnz(self) -> int:
-        """Number of entries."""
-        return len(self.data)
-
-    @classmethod
-    def of(
-        cls, values: Array, rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]
-    ) -> Sparse:
-        """Put entries in order; what is given twice counts as their sum."""
-        places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
-        data: Array = np.bincount(entry, values, len(places)).astype(float)
-        ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
-        return cls(data, (places % shape[0]).astype(np.int32), ends.astype(np.int32), shape)
-
-
-@dataclass(frozen=True, slots=True)
 class Maximum:
     """What the solver returned, whatever its status."""
 
@@ -179,43 +149,20 @@ class SemidefiniteProgram:
         cones = ((block.order, len(block.unknowns)) for block in self._blocks)
         return program_cost(self.unknowns, int(shared.sum()), cones)
 
-    def _alike(self) -> list[list[Block]]:
-        """Group blocks of one size in which the same unknowns enter."""
-        groups: dict[object, list[Block]] = {}
+    @cached_property
+    def groups(self) -> list[Group]:
+        """Blocks of one size in which the same unknowns enter are a group."""
+        alike: dict[object, list[Block]] = {}
         for block in self._blocks:
-            groups.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
-        return list(groups.values())
-
-    def cost_of_own(self) -> Cost:
-        """Predict what a step of our own method takes."""
-        groups = self._alike()
-        sizes = [(len(own), own[0].order, len(own[0].unknowns)) for own in groups]
-        return interior_point.cost(self.unknowns, sizes)
-
-    def improve(self, start: Array, allowance: Allowance) -> Array | None:
-        """Make the last unknown positive by our own method, and large up to a share of itself.
-
-        It is taken from the diagonals of some blocks, in which nothing else is negative. None if
-        floating point did not suffice to tell whether it can be positive.
-        """
-        step, y = self.cost_of_own(), start.copy()
-        what = f"a program of {self.unknowns} unknowns and {len(self._blocks)} blocks"
-        allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
-        groups = [
-            interior_point.Group(
+            alike.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
+        return [
+            Group(
                 own[0].unknowns,
                 unpack(np.array([block.constant for block in own]), own[0].order),
                 unpack(np.array([block.images.T for block in own]), own[0].order),
             )
-            for own in self._alike()
+            for own in alike.values()
         ]
-        margin, y[-1] = y[-1], 0.0
-        counting = [own.at(y) for own in groups if own.unknowns[-1] == self.unknowns - 1]
-        least = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)
-        below = max(0.1 * max(float(np.abs(X).max()) for X in counting), START_FLOOR)
-        y[-1] = least - (min(below, WARM * margin) if margin > 0 else below)
-        y, decided = interior_point.maximize(groups, y, lambda: allowance.goes_on(step.work))
-        return y if decided else None
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
         """Return what the solver returned, whatever its status; None if that is not finite.
@@ -223,6 +170,7 @@ class SemidefiniteProgram:
         The steps that it made are charged.
         """
         import clarabel
+        from scipy.sparse import csc_matrix
 
         cost, count, blocks = self.cost(), self.unknowns, self._blocks
         allowance.take(cost, f"a program of {count} unknowns and {len(blocks)} blocks")
@@ -233,10 +181,9 @@ class SemidefiniteProgram:
             row, column = np.nonzero(block.images)
             entries.append((-block.images[row, column], start + row, block.unknowns[column]))
         values, rows, columns = (np.concatenate(part) for part in zip(*entries, strict=True))
-        matrix = Sparse.of(values, rows, columns, (int(first[-1]), count))
-        objective, none = np.zeros(count), np.zeros(0)
+        matrix = csc_matrix((values, (rows, columns)), (int(first[-1]), count))
+        objective, quadratic = np.zeros(count), csc_matrix((count, count))
         objective[-1] = -1.0
-        quadratic = Sparse.of(none, none, none, (count, count))
         cones = [clarabel.PSDTriangleConeT(block.order) for block in blocks]
         settings = clarabel.DefaultSettings()
         settings.verbose = False

@@ -21,8 +21,8 @@ from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
+from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.balance import own_norms, round_coordinates, scale_states, separating
-from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
 from nrs_design.search.family import Family, limit_rate, to_floats
 from nrs_design.search.forms import FormsProgram

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.balance import mean_norm, own_norms, round_coordinates
-from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order

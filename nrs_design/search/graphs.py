@@ -20,6 +20,7 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.balance import (
     balance,
     mean_norm,
@@ -28,7 +29,6 @@ from nrs_design.search.balance import (
     separating,
 )
 from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates
 from nrs_design.search.family import (
     Family,

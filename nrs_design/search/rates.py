@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Protocol, TypeVar
 
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, position_of, rate_at
 from nrs_design.work import Allowance, NotAffordableError

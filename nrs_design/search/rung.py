@@ -12,7 +12,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.search.candidates import Candidates, Search
+from nrs_design.search.acceptance import Candidates, Search
 from nrs_design.search.certification import Limits
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method

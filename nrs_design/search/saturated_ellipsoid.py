@@ -22,8 +22,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import CutOff
 from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.balance import round_coordinates
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, nearly_same, separating_coordinates, to_floats
 from nrs_design.search.one_form import (
     Constraint,

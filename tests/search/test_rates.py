@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.candidates import NO_MARGIN
+from nrs_design.search.acceptance import NO_MARGIN
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import draw_balanced

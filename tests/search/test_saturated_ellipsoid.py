@@ -9,8 +9,7 @@ import pytest
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.saturation import CutOff, Saturation, Start
-from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.candidates import NO_MARGIN
+from nrs_design.search.acceptance import NO_MARGIN, first_accepted
 from nrs_design.search.certify import certify
 from nrs_design.search.saturated_ellipsoid import search_saturated
 from nrs_design.work import Allowance, NotAffordableError

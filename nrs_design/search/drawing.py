@@ -23,6 +23,7 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY, to_floats
+from nrs_design.search.sdp import packed_congruence
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -118,6 +119,29 @@ class Inequality:
     def size(self) -> int:
         """Number of entries of z."""
         return int(self.M.shape[1])
+
+    def images(
+        self,
+        starts: Sequence[int],
+        sizes: Sequence[int],
+        keeps: float,
+        counts: float,
+        unit: int = 0,
+    ) -> list[tuple[int, Array]]:
+        """Return what packed forms, from where they start, make of it, without facts.
+
+        Of a map ``keeps Q - counts M' Q M``, of a flow ``-(Q M + M' Q) - counts Q``, where M is
+        multiplied with two to the power of the unit.
+        """
+        E = np.zeros((self.size, sizes[self.before]))
+        E[np.arange(len(self.kept)), self.kept] = 1.0
+        M = np.zeros((self.size, sizes[self.after]))
+        M[:, self.left] = self.M.T
+        if self.is_flow:
+            N = -np.ldexp(M, unit) - counts / 2 * E
+            return [(starts[self.before], packed_congruence(E, N) + packed_congruence(N, E))]
+        before = starts[self.before], packed_congruence(keeps * E, E)
+        return [before, (starts[self.after], packed_congruence(-counts * M, M))]
 
     def changed(self, Q: Array) -> Array:
         """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for forms or M of any number."""

@@ -39,7 +39,6 @@ from nrs_design.search.sdp import (
     SemidefiniteProgram,
     pack,
     packed_columns,
-    packed_congruence,
     unpack,
 )
 from nrs_design.search.stays import enough_pieces
@@ -232,20 +231,8 @@ class FormsProgram:
             program.add(LARGEST_MULTIPLIER * one, [(k, -one)])
         factors = self.factors(rate)
         for k in active:
-            edge, weight = self.edges[k], factors[k]
-            E = np.zeros((edge.size, self.sizes[edge.before]))
-            E[np.arange(len(edge.kept)), edge.kept] = 1.0
-            M = np.zeros((edge.size, self.sizes[edge.after]))
-            M[:, edge.left] = edge.M.T
-            before, after = starts[edge.before], starts[edge.after]
-            if edge.is_flow:
-                N = -np.ldexp(M, self.unit) - weight / 2 * E
-                images = [(before, packed_congruence(E, N) + packed_congruence(N, E))]
-            else:
-                images = [
-                    (before, packed_congruence(E, E)),
-                    (after, packed_congruence(-weight * M, M)),
-                ]
+            edge = self.edges[k]
+            images = edge.images(starts, self.sizes, 1.0, factors[k], self.unit)
             images += [
                 (starts[-1] + place[fact], packed_columns(own[None])) for fact, own in edge.facts
             ]

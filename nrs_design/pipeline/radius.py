@@ -27,10 +27,10 @@ from nrs_design.search.branches import StepGraph, best_words
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.forms import FormsProgram
+from nrs_design.search.ladder import Facts
 from nrs_design.search.memory import draw_memory, least_growth, memories, words_in_norms
 from nrs_design.search.period import powers
 from nrs_design.search.rounding import digits
-from nrs_design.search.rung import Facts
 from nrs_design.work import Allowance, NotAffordableError
 
 E = TypeVar("E", bound=AbstractEvidence)

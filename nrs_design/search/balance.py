@@ -13,9 +13,8 @@ from nrs_design.proof.mode import Time
 SWEEPS = 64
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
-# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system, for which
-# SciPy need not be loaded.
-DENSE_ORDER = 10
+# Lyapunov equations are solved to this in at most so many rounds.
+NOTHING_LEFT, DOUBLINGS = 1e-10, 60
 
 
 def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -84,23 +83,19 @@ def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
 
 
 def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
-    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (m, n, n)."""
-    m, n = matrices.shape[:2]
-    identity, back = np.eye(n), np.swapaxes(matrices, 1, 2)
-    if n > DENSE_ORDER:
-        from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``, of stable modes (m, n, n).
 
-        if time is Time.CONTINUOUS:
-            P = np.array([solve_continuous_lyapunov(A, -identity) for A in back])
-        else:
-            P = np.array([solve_discrete_lyapunov(A, identity, "bilinear") for A in back])
-    else:
-        sides = (back, back) if time is Time.DISCRETE else (back, identity)
-        whole = np.einsum("...ik,...jl->...ijkl", *sides)
-        whole = np.broadcast_to(whole, (m, n, n, n, n))
-        if time is Time.CONTINUOUS:
-            whole = whole + whole.transpose(0, 2, 1, 4, 3)
-        operator = whole.reshape(m, n * n, n * n) - (time is Time.DISCRETE) * np.eye(n * n)
-        P = np.linalg.solve(operator, np.full((m, n * n, 1), -identity.reshape(-1, 1)))
-        P = P.reshape(m, n, n)
-    return np.asarray((P + np.swapaxes(P, 1, 2)) / 2)
+    P is the sum of ``M'^k W M^k``, of which each round takes twice as many; in continuous time, M
+    and W are those of Cayley.
+    """
+    M, W = matrices, np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape)
+    if time is Time.CONTINUOUS:
+        size = np.sqrt((matrices**2).mean(axis=(1, 2)) * matrices.shape[-1])[:, None, None]
+        back = np.linalg.inv(size * W - matrices)
+        M, W = back @ (size * W + matrices), 2 * size * (np.swapaxes(back, 1, 2) @ back)
+    for _ in range(DOUBLINGS):
+        W = W + np.swapaxes(M, 1, 2) @ W @ M
+        M = M @ M
+        if np.abs(M).max() < NOTHING_LEFT:
+            break
+    return np.asarray((W + np.swapaxes(W, 1, 2)) / 2)

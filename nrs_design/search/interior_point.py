@@ -37,7 +37,7 @@ PER_STEP, PER_GROUP, PER_PRODUCT, BYTES_PER_ENTRY = 2e-4, 3e-4, 1e-10, 32
 
 
 @dataclass(frozen=True)
-class Group:
+class ConeGroup:
     """Blocks of one size in which the same unknowns enter: ``X = C + sum of y_k F_k``."""
 
     unknowns: NDArray[np.int64]
@@ -49,7 +49,7 @@ class Group:
         return np.asarray(self.constants + np.tensordot(self.forms, y[self.unknowns], (1, 0)))
 
 
-def step_cost(groups: Sequence[Group], unknowns: int) -> Cost:
+def step_cost(groups: Sequence[ConeGroup], unknowns: int) -> Cost:
     """Predict what a step takes."""
     entries = [(group.forms.size, *group.forms.shape[1:3]) for group in groups]
     products = unknowns**3 / 3 + sum(size * (2 * s + k) for size, k, s in entries)
@@ -57,7 +57,7 @@ def step_cost(groups: Sequence[Group], unknowns: int) -> Cost:
     return Cost(work, BYTES_PER_ENTRY * sum(size for size, *_ in entries))
 
 
-def maximize(groups: Sequence[Group], start: Array, allowance: Allowance) -> Array | None:
+def maximize(groups: Sequence[ConeGroup], start: Array, allowance: Allowance) -> Array | None:
     """Make the last unknown positive, and large up to a share of itself.
 
     It is taken from the diagonals of some blocks, of which the start leaves something, perhaps so
@@ -96,7 +96,7 @@ def maximize(groups: Sequence[Group], start: Array, allowance: Allowance) -> Arr
     return y if bound < NEARLY_NIL else None
 
 
-def _adjoint(groups: Sequence[Group], Z: list[Array], count: int) -> Array:
+def _adjoint(groups: Sequence[ConeGroup], Z: list[Array], count: int) -> Array:
     """Return the product of every unknown's forms with matrices."""
     result = np.zeros(count)
     for group, own in zip(groups, Z, strict=True):
@@ -105,7 +105,7 @@ def _adjoint(groups: Sequence[Group], Z: list[Array], count: int) -> Array:
 
 
 def _step(
-    groups: Sequence[Group], X: list[Array], Z: list[Array], count: int
+    groups: Sequence[ConeGroup], X: list[Array], Z: list[Array], count: int
 ) -> tuple[Array, list[Array], float]:
     """Return the changes of y and Z, and by how much the equations of the optimum will fail.
 

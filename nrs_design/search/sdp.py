@@ -13,7 +13,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.interior_point import Group
+from nrs_design.search.interior_point import ConeGroup
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -150,13 +150,13 @@ class SemidefiniteProgram:
         return program_cost(self.unknowns, int(shared.sum()), cones)
 
     @cached_property
-    def groups(self) -> list[Group]:
+    def groups(self) -> list[ConeGroup]:
         """Blocks of one size in which the same unknowns enter are a group."""
         alike: dict[object, list[Block]] = {}
         for block in self._blocks:
             alike.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
         return [
-            Group(
+            ConeGroup(
                 own[0].unknowns,
                 unpack(np.array([block.constant for block in own]), own[0].order),
                 unpack(np.array([block.images.T for block in own]), own[0].order),

@@ -30,7 +30,7 @@ from nrs_design.search.forms import FormsProgram
 from nrs_design.search.ladder import Facts
 from nrs_design.search.memory import draw_memory, least_growth, memories, words_in_norms
 from nrs_design.search.period import powers
-from nrs_design.search.rounding import digits
+from nrs_design.search.rates import digits
 from nrs_design.work import Allowance, NotAffordableError
 
 E = TypeVar("E", bound=AbstractEvidence)

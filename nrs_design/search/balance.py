@@ -14,7 +14,7 @@ SWEEPS = 64
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
 # Lyapunov equations are solved to this in at most so many rounds.
-NOTHING_LEFT, DOUBLINGS = 1e-10, 60
+NOTHING_LEFT, DOUBLINGS, GROWN = 1e-10, 60, 1e50
 
 
 def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -86,7 +86,7 @@ def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``, of stable modes (m, n, n).
 
     P is the sum of ``M'^k W M^k``, of which each round takes twice as many; in continuous time, M
-    and W are those of Cayley.
+    and W are those of Cayley. A LinAlgError if a mode is not stable.
     """
     M, W = matrices, np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape)
     if time is Time.CONTINUOUS:
@@ -96,6 +96,8 @@ def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     for _ in range(DOUBLINGS):
         W = W + np.swapaxes(M, 1, 2) @ W @ M
         M = M @ M
-        if np.abs(M).max() < NOTHING_LEFT:
+        if (left := np.abs(M).max()) < NOTHING_LEFT:
+            return np.asarray((W + np.swapaxes(W, 1, 2)) / 2)
+        if not left < GROWN:
             break
-    return np.asarray((W + np.swapaxes(W, 1, 2)) / 2)
+    raise np.linalg.LinAlgError("a mode that is not stable has no norm")

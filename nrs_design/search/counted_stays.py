@@ -27,8 +27,7 @@ from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solu
 from nrs_design.search.family import Family, limit_rate, to_floats
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
-from nrs_design.search.rates import Rates, propose
-from nrs_design.search.rounding import digits, rate_at
+from nrs_design.search.rates import Rates, digits, propose, rate_at
 from nrs_design.work import Allowance
 
 # Of the slowest decay that a controller has, what its form keeps while it is in force.

@@ -33,7 +33,7 @@ from nrs_design.search.drawing import (
 )
 from nrs_design.search.interior_point import maximize, step_cost
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
-from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
+from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
 from nrs_design.search.sdp import (
     STEPS,
     SemidefiniteProgram,
@@ -358,78 +358,68 @@ class FormsProgram:
         *,
         errors: bool = False,
     ) -> Iterator[FormsOnGraph]:
-        """Yield roundings of all forms to integers over one denominator, as `rounded_forms`."""
-        return rounded_forms(self, solution, claim, digits, errors=errors)
+        """Yield roundings of all forms to integers over one denominator.
+
+        The claimed rate holds for the solution in floating point. `errors`: errors that were not
+        solved for are covered, at a rate that leaves room.
+        """
+        drawing, coordinates = self.drawing, self.drawing.coordinates
+        inverses = [np.linalg.inv(one.T) for one in coordinates]
+        balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
+        exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
+        top = max(int(one.exponents.max()) for one in coordinates)
+        scales = np.array([*self.scales.values()])
+        multipliers = np.ldexp(solution.multipliers * scales, -self.unit)
+        found = dict(zip(self.scales, multipliers, strict=True))
+        if errors:
+            taus, claim = _allow_for(self, solution, claim)
+            if claim >= 1:
+                return
+            found |= taus
+        for bits in digits:
+            if bits != digits[-1] and not errors:
+                coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+                own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
+                if not self.margins(replace(solution, forms=own), float(claim)).min() > 0:
+                    continue
+            log2 = bits + 2 * top
+            whole = [
+                round_form(Q, top - one.exponents, bits - exponent)
+                for one, Q in zip(coordinates, balanced, strict=True)
+            ]
+            nodes = []
+            for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
+                kept = entries_of(drawing, k, states_at(drawing, node))
+                nodes.append(
+                    Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept))
+                )
+            values = numerators(np.array([*found.values()]), log2 - exponent)
+            facts = tuple(
+                Multiplier(name, value, target)
+                for (name, b), value in zip(found, values, strict=True)
+                for target in ([None] if b is None else drawing.like(b))
+            )
+            graph = replace(
+                drawing.graph,
+                nodes=tuple(nodes),
+                denominator_log2=max(log2, 0),
+                rate=claim,
+                multipliers=facts,
+            )
+            if graph.stays and graph.stays.leaving and self.time is Time.CONTINUOUS:
+                # How finely stays of any length are enclosed.
+                if (pieces := enough_pieces(drawing.system, graph)) is None:
+                    continue
+                graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
+            if self.degree > 1:
+                forms = _round_vanishing(self, graph, solution, bits - exponent, top)
+                graph = replace(graph, vanishing=forms)
+            yield graph
 
 
 def _spaced(count: int, few: int) -> list[int]:
     """Return so many of the first numbers, at about equal distances."""
     return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
-
-
-def rounded_forms(
-    program: FormsProgram,
-    solution: Solution,
-    claim: Fraction,
-    digits: Sequence[int],
-    *,
-    errors: bool = False,
-) -> Iterator[FormsOnGraph]:
-    """Yield roundings of all forms to integers over one denominator.
-
-    The claimed rate holds for the solution in floating point. `errors`: errors that were not
-    solved for are covered, at a rate that leaves room.
-    """
-    drawing, coordinates = program.drawing, program.drawing.coordinates
-    inverses = [np.linalg.inv(one.T) for one in coordinates]
-    balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
-    exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
-    top = max(int(one.exponents.max()) for one in coordinates)
-    scales = np.array([*program.scales.values()])
-    multipliers = np.ldexp(solution.multipliers * scales, -program.unit)
-    found = dict(zip(program.scales, multipliers, strict=True))
-    if errors:
-        taus, claim = _allow_for(program, solution, claim)
-        if claim >= 1:
-            return
-        found |= taus
-    for bits in digits:
-        if bits != digits[-1] and not errors:
-            coarse = [_rounded(Q, bits - exponent) for Q in balanced]
-            own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
-            if not program.margins(replace(solution, forms=own), float(claim)).min() > 0:
-                continue
-        log2 = bits + 2 * top
-        whole = [
-            round_form(Q, top - one.exponents, bits - exponent)
-            for one, Q in zip(coordinates, balanced, strict=True)
-        ]
-        nodes = []
-        for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
-            kept = entries_of(drawing, k, states_at(drawing, node))
-            nodes.append(Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept)))
-        values = numerators(np.array([*found.values()]), log2 - exponent)
-        facts = tuple(
-            Multiplier(name, value, target)
-            for (name, b), value in zip(found, values, strict=True)
-            for target in ([None] if b is None else drawing.like(b))
-        )
-        graph = replace(
-            drawing.graph,
-            nodes=tuple(nodes),
-            denominator_log2=max(log2, 0),
-            rate=claim,
-            multipliers=facts,
-        )
-        if graph.stays and graph.stays.leaving and program.time is Time.CONTINUOUS:
-            # How finely stays of any length are enclosed.
-            if (pieces := enough_pieces(drawing.system, graph)) is None:
-                continue
-            graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
-        if program.degree > 1:
-            forms = _round_vanishing(program, graph, solution, bits - exponent, top)
-            graph = replace(graph, vanishing=forms)
-        yield graph
 
 
 def _round_vanishing(

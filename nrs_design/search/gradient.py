@@ -20,8 +20,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.graphs import draw_balanced
-from nrs_design.search.rates import at_own_rate
-from nrs_design.search.rounding import digits, position_of, rate_at
+from nrs_design.search.rates import at_own_rate, digits, position_of, rate_at
 from nrs_design.work import Allowance, NotAffordableError
 
 # Work per round and per multiplication in it.

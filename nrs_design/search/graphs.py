@@ -46,8 +46,7 @@ from nrs_design.search.polynomial import (
     monomial_weights,
     work_of_checks,
 )
-from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, propose
-from nrs_design.search.rounding import digits, round_rate
+from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, digits, propose, round_rate
 from nrs_design.search.stays import round_stays
 from nrs_design.work import Cost
 

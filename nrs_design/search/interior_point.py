@@ -65,9 +65,8 @@ def maximize(groups: Sequence[ConeGroup], start: Array, allowance: Allowance) ->
     tell whether it can be positive.
     """
     step, y, margin = step_cost(groups, len(start)), start.copy(), start[-1]
-    allowance.require(
-        Cost(FEWEST_STEPS * step.work, step.memory), f"a program of {len(y)} unknowns"
-    )
+    what = f"a program of {len(y)} unknowns and {sum(len(X.constants) for X in groups)} blocks"
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
     y[-1] = 0.0
     counting = [group.at(y) for group in groups if group.unknowns[-1] == len(y) - 1]
     least = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)

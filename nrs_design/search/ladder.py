@@ -70,14 +70,6 @@ class Facts:
         contact = self.system.contact
         return contact is not None and not contact.pulls and self.may_share_an_ellipsoid()
 
-    def bounces_in_steps(self) -> bool:
-        """Tell the same of discrete time."""
-        return self.may_bounce() and not self.is_continuous()
-
-    def bounces_in_time(self) -> bool:
-        """Tell the same of continuous time."""
-        return self.may_bounce() and self.is_continuous()
-
     def rounds(self) -> bool:
         """Tell whether a quadratic function has to cover what the arithmetic rounds."""
         kept = self.system.contact is None
@@ -257,13 +249,13 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "conewise mode quadratic",
         Method.CONEWISE_MODE_QUADRATIC,
-        Facts.bounces_in_steps,
+        lambda f: f.may_bounce() and not f.is_continuous(),
         _in("graphs", "search_conewise_modes"),
     ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
-        Facts.bounces_in_time,
+        lambda f: f.may_bounce() and f.is_continuous(),
         _in("graphs", "search_conewise_polynomial"),
         cost=_in("polynomial", "conewise_cost"),
         first=QUICK,

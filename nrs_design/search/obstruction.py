@@ -17,7 +17,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import time_unit
 from nrs_design.search.family import Family
-from nrs_design.search.rounding import digits
+from nrs_design.search.rates import digits
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
 from nrs_design.work import Allowance
 

@@ -22,7 +22,7 @@ from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Acting, Step, steps_of
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.drawing import Error, FloatStep, Inequality, distinct
-from nrs_design.search.rounding import numerators, unscale
+from nrs_design.search.rates import numerators, unscale
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 

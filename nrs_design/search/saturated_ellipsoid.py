@@ -33,7 +33,7 @@ from nrs_design.search.one_form import (
     of_roundings,
     plain_steps,
 )
-from nrs_design.search.rounding import position_of, rate_at, round_rate
+from nrs_design.search.rates import position_of, rate_at, round_rate
 from nrs_design.search.saturated_region import Array, Region, SaturatingLoop, largest_region
 from nrs_design.work import Allowance
 

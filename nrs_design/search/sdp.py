@@ -37,12 +37,7 @@ BYTES_PER_FACTOR_ENTRY = 20
 
 def symmetric_basis(n: int) -> Array:
     """Return the orthonormal basis of symmetric n x n matrices, in the solver's order."""
-    i, j = triangle(n)
-    basis = np.zeros((len(i), n, n))
-    weight = np.where(i == j, 1.0, np.sqrt(0.5))
-    basis[np.arange(len(i)), i, j] = weight
-    basis[np.arange(len(i)), j, i] = weight
-    return basis
+    return unpack(np.eye(n * (n + 1) // 2), n)
 
 
 def pack(matrices: Array) -> Array:

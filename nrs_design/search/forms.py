@@ -52,9 +52,9 @@ FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
 # Work for the first edges from which on a general solver is not asked, nor for one form: to load it
-# takes longer than to find that. Our own method takes more edges at once, and is content with less
+# takes longer than to find that. Our own method is content with less room
 # of those outside. It begins with multipliers of this size, or at this share of what it found last.
-DEAR, FIRST_OF_DEAR, BARELY = 0.05, 64, 0.1
+DEAR, BARELY = 0.05, 0.1
 START_MULTIPLIER, BACK = 0.1, 0.7
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
 LARGEST_MULTIPLIER = 64.0
@@ -62,8 +62,8 @@ LARGEST_MULTIPLIER = 64.0
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
-# What is rounded takes a little more than in the first order.
-LOST_TO_ERRORS = 1.25
+# What is rounded takes up to so many times what it takes in the first order.
+LOST_TO_ERRORS = 3.0
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class FormsProgram:
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
         few = count if whole else min(count, FIRST_EDGES)
         # The edges that solutions are sought for; what one violates is added, and stays.
-        self.active = _spaced(count, few)
+        self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         if flows and self.degree > 1:
             # The unit of the modes themselves: lifted entries, and margins with them, grow with
@@ -102,8 +102,6 @@ class FormsProgram:
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
         self._last: Array | None = None  # What our own method found last
         self.is_dear = self._is_dear()
-        if self.is_dear and len(self.sizes) > 1:
-            self.active = _spaced(count, max(few, min(count, FIRST_OF_DEAR)))
 
     def _is_dear(self) -> bool:
         """Tell whether our own method is faster than a general solver.
@@ -415,11 +413,6 @@ class FormsProgram:
                 forms = _round_vanishing(self, graph, solution, bits - exponent, top)
                 graph = replace(graph, vanishing=forms)
             yield graph
-
-
-def _spaced(count: int, few: int) -> list[int]:
-    """Return so many of the first numbers, at about equal distances."""
-    return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
 
 
 def _round_vanishing(

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import product
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +54,8 @@ FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
 # Work for the first edges from which on a general solver is not asked, nor for one form: to load it
-# takes longer than to find that. Our own method is content with less room
-# of those outside. It begins with multipliers of this size, or at this share of what it found last.
+# takes longer than to find that. Our own method is content with this share of the margin instead.
+# It begins with multipliers of this size, or at this share of what it found last.
 DEAR, BARELY = 0.05, 0.1
 START_MULTIPLIER, BACK = 0.1, 0.7
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
@@ -62,8 +64,8 @@ LARGEST_MULTIPLIER = 64.0
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
-# What is rounded takes up to so many times what it takes in the first order.
-LOST_TO_ERRORS = 3.0
+# What is rounded takes so many times what it takes in the first order, or else so many times.
+LOST_TO_ERRORS = (1.25, 3.0)
 
 
 @dataclass(frozen=True)
@@ -369,12 +371,14 @@ class FormsProgram:
         scales = np.array([*self.scales.values()])
         multipliers = np.ldexp(solution.multipliers * scales, -self.unit)
         found = dict(zip(self.scales, multipliers, strict=True))
-        if errors:
-            taus, claim = _allow_for(self, solution, claim)
-            if claim >= 1:
+        taus, worst = _taken_by_errors(self, solution) if errors else ({}, 0.0)
+        found |= taus
+        for lost, bits in product(LOST_TO_ERRORS if errors else (0.0,), digits):
+            rate = claim
+            if errors:
+                rate = round_rate(sqrt(float(claim) ** 2 + lost * worst), Time.DISCRETE)
+            if errors and rate >= 1:
                 return
-            found |= taus
-        for bits in digits:
             if bits != digits[-1] and not errors:
                 coarse = [_rounded(Q, bits - exponent) for Q in balanced]
                 own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
@@ -401,7 +405,7 @@ class FormsProgram:
                 drawing.graph,
                 nodes=tuple(nodes),
                 denominator_log2=max(log2, 0),
-                rate=claim,
+                rate=rate,
                 multipliers=facts,
             )
             if graph.stays and graph.stays.leaving and self.time is Time.CONTINUOUS:
@@ -432,10 +436,8 @@ def _round_vanishing(
     return tuple(found)
 
 
-def _allow_for(
-    program: FormsProgram, solution: Solution, claim: Fraction
-) -> tuple[dict[Fact, float], Fraction]:
-    """Return multipliers of errors, and what is left of a rate if a form loses what they take.
+def _taken_by_errors(program: FormsProgram, solution: Solution) -> tuple[dict[Fact, float], float]:
+    """Return multipliers of errors, and which share of a form they take in a step.
 
     In the norm of the forms, an error of size ``s`` times that of the state takes ``2 s`` of
     V; with the multiplier ``|C| / |q|`` half of it is taken by either term.
@@ -456,8 +458,7 @@ def _allow_for(
             loss.setdefault(fact[1] or 0, set()).add(fact)
     worst = max(sum(2 * pushed[f] * sizes[f] for f in facts) for facts in loss.values())
     taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
-    left = float(claim) ** 2 + LOST_TO_ERRORS * worst
-    return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+    return taus, worst
 
 
 def _factor(step: Step, degree: int, rate: Fraction) -> int:

@@ -103,9 +103,9 @@ class FormsProgram:
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
         self._last: Array | None = None  # What our own method found last
-        self.is_dear = self._is_dear()
 
-    def _is_dear(self) -> bool:
+    @cached_property
+    def is_dear(self) -> bool:
         """Tell whether our own method is faster than a general solver.
 
         It begins where every inequality has room, and knows quadratic forms only.

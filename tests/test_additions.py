@@ -76,7 +76,7 @@ def add_shape(package: Path) -> None:
     rung = """    Rung(
         "last mode",
         Method.MODE_QUADRATIC,
-        lambda f: f.is_arbitrary and not f.is_continuous,
+        lambda f: f.system.switching.is_arbitrary and not f.is_continuous(),
         _in("last_mode", "search_last_mode"),
     ),
 """

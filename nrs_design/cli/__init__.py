@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import sys
 import warnings
 from typing import NoReturn
@@ -10,6 +12,8 @@ from nrs_design.cli import exit_codes
 
 __all__ = ["main"]
 
+# Imports make many objects that stay until the end: to look at them takes as long as a short proof.
+COLLECT_AFTER = 200_000
 # Of addresses, in bytes: with less, OpenBLAS ends the process with code 1.
 LEAST_MEMORY = 512 * 2**20
 
@@ -20,6 +24,8 @@ def main() -> None:
     Under ``-W error`` warnings are shown, but do not end the program: they are about code, not
     about a spec.
     """
+    gc.set_threshold(COLLECT_AFTER)
+    atexit.register(gc.freeze)
     if any(entry[0] == "error" for entry in warnings.filters):
         warnings.simplefilter("default")
     try:

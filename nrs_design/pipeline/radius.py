@@ -22,16 +22,15 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.acceptance import Candidate, Candidates, first_accepted
 from nrs_design.search.branches import StepGraph, best_words
-from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.forms import FormsProgram
+from nrs_design.search.ladder import Facts
 from nrs_design.search.memory import draw_memory, least_growth, memories, words_in_norms
 from nrs_design.search.period import powers
-from nrs_design.search.rounding import digits
-from nrs_design.search.rung import Facts
+from nrs_design.search.rates import digits
 from nrs_design.work import Allowance, NotAffordableError
 
 E = TypeVar("E", bound=AbstractEvidence)

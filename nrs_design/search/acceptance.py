@@ -1,9 +1,11 @@
-"""Where evidence is accepted: candidates are taken here, by the exact check alone."""
+"""What a search yields, and where it is accepted: by the exact check alone."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
 from time import perf_counter
+from typing import Generic, TypeVar
 
 from numpy.linalg import LinAlgError
 
@@ -11,9 +13,8 @@ from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, bit_length
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.candidates import Candidates, E
 from nrs_design.search.certification import Attempt
-from nrs_design.search.family import floats_in_silence
+from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.work import Allowance, NotAffordableError
 
 # Work of a check per candidate and per form: for itself, more where what happens during a stay is
@@ -22,6 +23,24 @@ PER_CANDIDATE, PER_FORM, PER_ENCLOSED_FORM = 1e-3, 1e-4, 5e-4
 PER_PRODUCT, PER_SQUARED_BITS = 1.5e-7, 2e-13
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
+NO_MARGIN = "the solver found no solution with positive margins"
+OUT_OF_RANGE = "the modes are beyond the range of floating point"
+
+E = TypeVar("E", bound=AbstractEvidence, covariant=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate(Generic[E]):
+    """Evidence as a search proposes it, and in words how the search ends if it is accepted."""
+
+    evidence: E
+    words: str = "found"
+
+
+# Best candidates first. At the end the words on why there is none, or None if there could have been
+# some: then whoever takes them knows why none was taken.
+Candidates = Generator[Candidate[E], None, str | None]
+Search = Callable[[Family], Candidates[AbstractEvidence]]
 
 
 def take_candidate(

@@ -13,9 +13,8 @@ from nrs_design.proof.mode import Time
 SWEEPS = 64
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
-# Larger Lyapunov equations are solved by Schur decompositions, not as one linear system, for which
-# SciPy need not be loaded.
-DENSE_ORDER = 10
+# Lyapunov equations are solved to this in at most so many rounds.
+NOTHING_LEFT, DOUBLINGS, GROWN = 1e-10, 60, 1e50
 
 
 def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -79,24 +78,26 @@ def separating(P: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     """Return the sum of the matrices of the modes' own norms, each of trace two."""
-    forms = [own_norm(A, time) for A in matrices]
-    return np.asarray(np.sum([2 * P / np.trace(P) for P in forms], axis=0))
+    P = own_norms(matrices, time)
+    return np.asarray((2 * P / np.trace(P, axis1=1, axis2=2)[:, None, None]).sum(axis=0))
 
 
-def own_norm(A: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
-    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``; shape (n, n)."""
-    n, identity = len(A), np.eye(len(A))
-    if n > DENSE_ORDER:
-        from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
+    """Solve ``A'P + PA = -I``, in discrete time ``A'PA - P = -I``, of stable modes (m, n, n).
 
-        if time is Time.CONTINUOUS:
-            P = solve_continuous_lyapunov(A.T, -identity)
-        else:
-            P = solve_discrete_lyapunov(A.T, identity, method="bilinear")
-        return np.asarray((P + P.T) / 2)
+    P is the sum of ``M'^k W M^k``, of which each round takes twice as many; in continuous time, M
+    and W are those of Cayley. A LinAlgError if a mode is not stable.
+    """
+    M, W = matrices, np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape)
     if time is Time.CONTINUOUS:
-        operator = np.kron(A.T, identity) + np.kron(identity, A.T)
-    else:
-        operator = np.kron(A.T, A.T) - np.eye(n * n)
-    P = np.linalg.solve(operator, -identity.ravel()).reshape(n, n)
-    return np.asarray((P + P.T) / 2)
+        size = np.sqrt((matrices**2).mean(axis=(1, 2)) * matrices.shape[-1])[:, None, None]
+        back = np.linalg.inv(size * W - matrices)
+        M, W = back @ (size * W + matrices), 2 * size * (np.swapaxes(back, 1, 2) @ back)
+    for _ in range(DOUBLINGS):
+        W = W + np.swapaxes(M, 1, 2) @ W @ M
+        M = M @ M
+        if (left := np.abs(M).max()) < NOTHING_LEFT:
+            return np.asarray((W + np.swapaxes(W, 1, 2)) / 2)
+        if not left < GROWN:
+            break
+    raise np.linalg.LinAlgError("a mode that is not stable has no norm")

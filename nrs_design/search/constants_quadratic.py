@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Time
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
 from nrs_design.search.balance import mean_norm_coordinates, time_unit
-from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.rates import Rates, propose
-from nrs_design.search.rounding import digits, round_form, round_matrix
+from nrs_design.search.rates import Rates, digits, propose, round_form, round_matrix
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 

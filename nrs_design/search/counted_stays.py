@@ -21,14 +21,13 @@ from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
-from nrs_design.search.balance import own_norm, round_coordinates, scale_states, separating
-from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
+from nrs_design.search.balance import own_norms, round_coordinates, scale_states, separating
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
 from nrs_design.search.family import Family, limit_rate, to_floats
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
-from nrs_design.search.rates import Rates, propose
-from nrs_design.search.rounding import digits, rate_at
+from nrs_design.search.rates import Rates, digits, propose, rate_at
 from nrs_design.work import Allowance
 
 # Of the slowest decay that a controller has, what its form keeps while it is in force.
@@ -193,7 +192,7 @@ def _draw(
     def coordinates(own: Array, rate: float) -> FormCoordinates:
         mean = own.mean(axis=0)
         kept = mean / max(rate, limit_rate(mean[None], Time.DISCRETE) / KEPT)
-        return FormCoordinates(family.exponents, apart(own_norm(kept, Time.DISCRETE)))
+        return FormCoordinates(family.exponents, apart(own_norms(kept[None], Time.DISCRETE)[0]))
 
     forms = tuple(k for k in clock.kinds for _ in places)
     drawn = tuple(map(coordinates, parts, rates))

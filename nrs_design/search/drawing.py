@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import chain
 from math import exp, inf, isfinite
 
@@ -21,7 +22,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.family import NEARLY
+from nrs_design.search.family import NEARLY, to_floats
+from nrs_design.search.sdp import packed_congruence
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -65,9 +67,10 @@ class Drawing:
     @property
     def is_finite(self) -> bool:
         """Whether floating point holds coordinates and modes."""
-        return all(np.isfinite(one.whole).all() for one in self.coordinates) and all(
-            np.isfinite(mode.A.floats()).all() for mode in self.system.modes
-        )
+        modes = [mode.A for mode in self.system.modes]
+        sizes = {A.shape for A in modes}
+        alike = (to_floats([A for A in modes if A.shape == size]) for size in sizes)
+        return all(np.isfinite(own).all() for own in (*alike, *(c.whole for c in self.coordinates)))
 
 
 @dataclass(frozen=True)
@@ -106,14 +109,44 @@ class Inequality:
         return self.share * float(rate ** (-2 * degree * self.lasts))
 
     @property
+    def kind(self) -> tuple[object, ...]:
+        """All but the numbers: which forms enter, and how."""
+        places = self.before, self.kept.tobytes(), self.after, self.left.tobytes()
+        facts = tuple(fact for fact, _ in self.facts)
+        return *places, facts, self.is_flow, self.lasts, self.is_strict, self.share
+
+    @property
     def size(self) -> int:
         """Number of entries of z."""
         return int(self.M.shape[1])
 
+    def images(
+        self,
+        starts: Sequence[int],
+        sizes: Sequence[int],
+        keeps: float,
+        counts: float,
+        unit: int = 0,
+    ) -> list[tuple[int, Array]]:
+        """Return what packed forms, from where they start, make of it, without facts.
+
+        Of a map ``keeps Q - counts M' Q M``, of a flow ``-(Q M + M' Q) - counts Q``, where M is
+        multiplied with two to the power of the unit.
+        """
+        E = np.zeros((self.size, sizes[self.before]))
+        E[np.arange(len(self.kept)), self.kept] = 1.0
+        M = np.zeros((self.size, sizes[self.after]))
+        M[:, self.left] = self.M.T
+        if self.is_flow:
+            N = -np.ldexp(M, unit) - counts / 2 * E
+            return [(starts[self.before], packed_congruence(E, N) + packed_congruence(N, E))]
+        before = starts[self.before], packed_congruence(keeps * E, E)
+        return [before, (starts[self.after], packed_congruence(-counts * M, M))]
+
     def changed(self, Q: Array) -> Array:
-        """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for one form or several."""
+        """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for forms or M of any number."""
         if not self.is_flow:
-            return np.asarray(self.M.T @ Q @ self.M)
+            return np.asarray(np.swapaxes(self.M, -1, -2) @ Q @ self.M)
         half = Q @ self.M
         return np.asarray(half + np.swapaxes(half, -1, -2))
 
@@ -180,13 +213,19 @@ def inequalities(
     scales = scales or {
         fact: 1 / size if size > 0 and isfinite(1 / size) else 1.0 for fact, size in sizes.items()
     }
+
+    @cache
+    def cut(form: int, states: int) -> tuple[Indices, Array, Array]:
+        """Return the entries that are left of a form, and its coordinates with their inverse."""
+        entries = np.array(entries_of(drawing, form, states), dtype=np.int64)
+        square = np.ix_(entries, entries)
+        return entries, wholes[form][square], np.asarray(inverses[form][square], dtype=float)
+
     for a, step, b in moves:
         before, after, floats = drawing.forms[a], drawing.forms[b], known[id(step)]
-        kept = np.array(entries_of(drawing, before, step.states), dtype=np.int64)
-        left = np.array(entries_of(drawing, after, len(step.rows)), dtype=np.int64)
-        S, n = wholes[before][np.ix_(kept, kept)], len(kept)
-        own = inverses[after][np.ix_(left, left)]
-        M = np.asarray(own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]]), dtype=float)
+        (kept, S, _), (left, _, own) = cut(before, step.states), cut(after, len(step.rows))
+        n = len(kept)
+        M = own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]])
         facts = list[tuple[Fact, Array]]()
         for name, c in floats.crossings:
             fact, form = names[b][name], np.zeros((n, n))
@@ -255,14 +294,12 @@ def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
     groups: dict[object, list[tuple[int, Array]]] = {}
     found = []
     for edge in edges:
-        facts = tuple(fact for fact, _ in edge.facts)
-        sizes = len(edge.kept), len(edge.left)
-        key = edge.before, edge.after, sizes, facts, edge.is_flow, edge.lasts, edge.is_strict
+        key = edge.kind
         numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
         near = NEARLY * np.abs(numbers).max(initial=0.0)
         # Edges that are near have nearly the same sum, so they are looked for in three places only.
         width = np.ldexp(1.0, int(np.frexp(near)[1])) * max(len(numbers), 1)
-        share = float(numbers @ np.cos(np.arange(len(numbers))) / width)
+        share = float(numbers @ _spread(len(numbers)) / width)
         place = int(share // 1) if isfinite(share) else 0
         beside = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
         others = chain.from_iterable(beside)
@@ -273,6 +310,12 @@ def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
             groups.setdefault((key, width, place), []).append((k, numbers))
         found.append(k)
     return kept, found
+
+
+@cache
+def _spread(count: int) -> Array:
+    """Return numbers between -1 and 1 of which no few add up to nothing."""
+    return np.cos(np.arange(count))
 
 
 @dataclass(frozen=True)
@@ -293,8 +336,13 @@ class FloatStep:
             row = [_ratio(e, unit * below) for e, unit in zip(entries, units, strict=False)]
             return np.array(row + [0.0] * (len(units) - len(row)))
 
+        try:
+            # In one go where the integers allow.
+            M = np.array(step.rows, np.int64) / (np.array(units, np.int64) * float(step.over))
+        except (OverflowError, ValueError):
+            M = np.array([floats(entries, step.over) for entries in step.rows])
         return cls(
-            np.array([floats(entries, step.over) for entries in step.rows]),
+            M,
             tuple((name, i, floats(q, below)) for name, i, q, below in step.errors),
             tuple((name, floats(c, below)) for name, c, below in step.crossings),
             tuple((name, floats(left), floats(right)) for name, left, right in step.products),

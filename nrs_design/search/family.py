@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,7 +90,9 @@ def rate_limit(system: SwitchedSystem) -> float | None:
 
     In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
     """
-    limits = [limit_rate(to_floats([m.A]), system.time) for m in system.lasting_modes()]
+    every = sorted((m.A for m in system.lasting_modes()), key=lambda A: A.shape[0])
+    alike = (to_floats([*group]) for _, group in groupby(every, lambda A: A.shape[0]))
+    limits = [limit_rate(matrices, system.time) for matrices in alike]
     if not limits:
         return None
     limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)

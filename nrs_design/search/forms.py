@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import product
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +33,16 @@ from nrs_design.search.drawing import (
     inequalities,
     states_at,
 )
+from nrs_design.search.interior_point import maximize, step_cost
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
-from nrs_design.search.rounding import numerators, rate_at, round_form, round_rate
-from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, packed_congruence, unpack
+from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
+from nrs_design.search.sdp import (
+    STEPS,
+    SemidefiniteProgram,
+    pack,
+    packed_columns,
+    unpack,
+)
 from nrs_design.search.stays import enough_pieces
 from nrs_design.work import Allowance
 
@@ -44,14 +53,19 @@ Indices = NDArray[np.int64]
 FIRST_EDGES, FEW_EACH = 8, 2
 # An edge outside the program keeps at least this share of the margin of those in it.
 NEARLY_ALL = 0.8
+# Work for the first edges from which on a general solver is not asked, nor for one form: to load it
+# takes longer than to find that. Our own method is content with this share of the margin instead.
+# It begins with multipliers of this size, or at this share of what it found last.
+DEAR, BARELY = 0.05, 0.1
+START_MULTIPLIER, BACK = 0.1, 0.7
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
 LARGEST_MULTIPLIER = 64.0
 # Forms reach up to the identity where there are any; all of them below this are zero.
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
-# What is rounded takes a little more than in the first order.
-LOST_TO_ERRORS = 1.25
+# What is rounded takes so many times what it takes in the first order, or else so many times.
+LOST_TO_ERRORS = (1.25, 3.0)
 
 
 @dataclass(frozen=True)
@@ -80,7 +94,7 @@ class FormsProgram:
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
         few = count if whole else min(count, FIRST_EDGES)
         # The edges that solutions are sought for; what one violates is added, and stays.
-        self.active = _spaced(count, few)
+        self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         if flows and self.degree > 1:
             # The unit of the modes themselves: lifted entries, and margins with them, grow with
@@ -88,6 +102,20 @@ class FormsProgram:
             given = np.array([mode.A.floats() for mode in drawing.system.modes])
             flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
+        self._last: Array | None = None  # What our own method found last
+
+    @cached_property
+    def is_dear(self) -> bool:
+        """Tell whether our own method is faster than a general solver.
+
+        It begins where every inequality has room, and knows quadratic forms only.
+        """
+        if self.degree > 1 or not all(edge.is_strict for edge in self.edges):
+            return False
+        program = self._program(self.active, rate_at(0.0, 1.0, self.time))
+        whole = program.cost().work
+        own = STEPS * step_cost(program.groups, program.unknowns).work
+        return len(self.sizes) == 1 or own < whole > DEAR
 
     @cached_property
     def _vanishing(self) -> list[Array]:
@@ -123,7 +151,8 @@ class FormsProgram:
                 return solution
             margins, known = self.margins(solution, rate), set(self.active)
             strict = np.array([edge.is_strict for edge in self.edges])
-            enough = NEARLY_ALL * min((margins[k] for k in known if strict[k]), default=0.0)
+            share = BARELY if self.is_dear else NEARLY_ALL
+            enough = share * min((margins[k] for k in known if strict[k]), default=0.0)
             tight = ~(margins > np.where(strict, max(enough, 0.0), 0.0))
             added = [k for k in np.argsort(margins) if tight[k] and k not in known]
             if not added:
@@ -133,8 +162,17 @@ class FormsProgram:
     def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
-        """Solve for some of the edges; None if there is no margin."""
-        found = self._program(active, rate).maximize(allowance)
+        """Solve for some of the edges; None if there is no margin.
+
+        Our own method goes on from where the last one ended, if it ended.
+        """
+        program = self._program(active, rate)
+        if self.is_dear:
+            y = maximize(program.groups, self._start(), allowance)
+            if y is not None:
+                self._last = y if y[-1] > 0 else self._last
+                return self._read(y, rate)
+        found = program.maximize(allowance)
         return None if found is None else self._read(found.x, rate)
 
     def solve_dual(self, rate: float, allowance: Allowance) -> DualSolution | None:
@@ -148,6 +186,30 @@ class FormsProgram:
             return None
         own = found.duals[len(found.duals) - len(self.active) :]
         return DualSolution(solution, dict(zip(self.active, own, strict=True)))
+
+    def _start(self) -> Array:
+        """Return forms and multipliers inside their bounds, and their margin if it is known."""
+        if self._last is not None:
+            return BACK * self._last
+        halves = [pack(np.eye(n) / 2) for n in self.sizes]
+        return np.array([*np.concatenate(halves), *[START_MULTIPLIER] * len(self.scales), 0.0])
+
+    @cached_property
+    def _kinds(self) -> list[tuple[list[int], Inequality]]:
+        """Put edges together that differ in their numbers alone: which, and a stack of them."""
+        groups: dict[object, list[int]] = {}
+        for k, edge in enumerate(self.edges):
+            groups.setdefault((edge.kind, k if self.degree > 1 else None), []).append(k)
+        found = []
+        for members in groups.values():
+            first, edges = self.edges[members[0]], [self.edges[k] for k in members]
+            facts_of = tuple(
+                (fact, np.array([edge.facts[i][1] for edge in edges]))
+                for i, (fact, _) in enumerate(first.facts)
+            )
+            M = np.array([edge.M for edge in edges])
+            found.append((members, replace(first, M=M, facts=facts_of)))
+        return found
 
     @cached_property
     def _starts(self) -> list[int]:
@@ -169,20 +231,8 @@ class FormsProgram:
             program.add(LARGEST_MULTIPLIER * one, [(k, -one)])
         factors = self.factors(rate)
         for k in active:
-            edge, weight = self.edges[k], factors[k]
-            E = np.zeros((edge.size, self.sizes[edge.before]))
-            E[np.arange(len(edge.kept)), edge.kept] = 1.0
-            M = np.zeros((edge.size, self.sizes[edge.after]))
-            M[:, edge.left] = edge.M.T
-            before, after = starts[edge.before], starts[edge.after]
-            if edge.is_flow:
-                N = -np.ldexp(M, self.unit) - weight / 2 * E
-                images = [(before, packed_congruence(E, N) + packed_congruence(N, E))]
-            else:
-                images = [
-                    (before, packed_congruence(E, E)),
-                    (after, packed_congruence(-weight * M, M)),
-                ]
+            edge = self.edges[k]
+            images = edge.images(starts, self.sizes, 1.0, factors[k], self.unit)
             images += [
                 (starts[-1] + place[fact], packed_columns(own[None])) for fact, own in edge.facts
             ]
@@ -212,12 +262,15 @@ class FormsProgram:
         forms = [unpack(part, n) for part, n in zip(packed, self.sizes, strict=True)]
         if x[-1] <= 0 or max(np.abs(Q).max() for Q in forms) < NOTHING:
             return None
+        multipliers, free = np.split(rest, [len(self.scales)])
+        share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
+        if self.degree == 1:
+            return replace(self.solution_of(forms), multipliers=share * multipliers)
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
             1.0 if edge.is_flow else 1 / f
             for edge, f in zip(self.edges, self.factors(rate), strict=True)
         ]
-        multipliers, free = np.split(rest, [len(self.scales)])
         # Where forms vanish, all edges are active.
         counts = np.cumsum([len(basis) for basis in self._vanishing])[:-1]
         vanishing = [
@@ -226,7 +279,6 @@ class FormsProgram:
                 keeps, np.split(free, counts), self._vanishing, strict=True
             )
         ]
-        share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         return Solution(forms, share * multipliers, vanishing)
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
@@ -256,24 +308,24 @@ class FormsProgram:
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
         return [every[k] for k in first]
 
-    def solution_of(self, Q: Array) -> Solution:
-        """Return a form for all modes, however it was found, as a solution."""
-        return Solution([Q], np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
+    def solution_of(self, forms: list[Array]) -> Solution:
+        """Return quadratic forms, however they were found, as a solution without facts."""
+        return Solution(forms, np.zeros(0), [np.zeros((1, 1))] * len(self.edges))
 
     def margins(self, solution: Solution, rate: float) -> Array:
         """Return the smallest eigenvalue of every inequality; it may be a little below zero.
 
         That is where a form need not decrease.
         """
-        margins = []
-        for edge, N in zip(self.edges, solution.vanishing, strict=True):
+        margins = np.zeros(len(self.edges))
+        for members, edge in self._kinds:
             slack = 0.0
             if not edge.is_strict:
                 Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
                 slack = SLACK * np.abs(Q).max()
-            form = self.decrease(edge, solution, N, rate)
-            margins.append(float(np.linalg.eigvalsh(form)[0]) + slack)
-        return np.array(margins)
+            form = self.decrease(edge, solution, solution.vanishing[members[0]], rate)
+            margins[members] = np.linalg.eigvalsh(form)[:, 0] + slack
+        return margins
 
     def own_rate(self, solution: Solution) -> float:
         """Return the rate that a solution shows where every edge is a flow or some steps.
@@ -281,14 +333,15 @@ class FormsProgram:
         A form that is not positive definite shows mere stability at most.
         """
         rates, stable = list[float](), rate_at(0.0, 1.0, self.time)
-        for edge, N in zip(self.edges, solution.vanishing, strict=True):
-            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+        for members, edge in self._kinds:
+            Q, N = solution.forms[edge.before], solution.vanishing[members[0]]
+            Q = Q[np.ix_(edge.kept, edge.kept)]
             try:
                 inverse = np.linalg.inv(np.linalg.cholesky(Q))
             except np.linalg.LinAlgError:
                 return stable
             form = inverse @ self._form(edge, solution, N) @ inverse.T
-            least = float(np.linalg.eigvalsh(form)[0])
+            least = float(np.linalg.eigvalsh(form)[:, 0].min())
             if edge.is_flow:
                 rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
             elif edge.lasts:
@@ -305,78 +358,65 @@ class FormsProgram:
         *,
         errors: bool = False,
     ) -> Iterator[FormsOnGraph]:
-        """Yield roundings of all forms to integers over one denominator, as `rounded_forms`."""
-        return rounded_forms(self, solution, claim, digits, errors=errors)
+        """Yield roundings of all forms to integers over one denominator.
 
-
-def _spaced(count: int, few: int) -> list[int]:
-    """Return so many of the first numbers, at about equal distances."""
-    return sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
-
-
-def rounded_forms(
-    program: FormsProgram,
-    solution: Solution,
-    claim: Fraction,
-    digits: Sequence[int],
-    *,
-    errors: bool = False,
-) -> Iterator[FormsOnGraph]:
-    """Yield roundings of all forms to integers over one denominator.
-
-    The claimed rate holds for the solution in floating point. `errors`: errors that were not
-    solved for are covered, at a rate that leaves room.
-    """
-    drawing, coordinates = program.drawing, program.drawing.coordinates
-    inverses = [np.linalg.inv(one.T) for one in coordinates]
-    balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
-    exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
-    top = max(int(one.exponents.max()) for one in coordinates)
-    scales = np.array([*program.scales.values()])
-    multipliers = np.ldexp(solution.multipliers * scales, -program.unit)
-    found = dict(zip(program.scales, multipliers, strict=True))
-    if errors:
-        taus, claim = _allow_for(program, solution, claim)
-        if claim >= 1:
-            return
+        The claimed rate holds for the solution in floating point. `errors`: errors that were not
+        solved for are covered, at a rate that leaves room.
+        """
+        drawing, coordinates = self.drawing, self.drawing.coordinates
+        inverses = [np.linalg.inv(one.T) for one in coordinates]
+        balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
+        exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
+        top = max(int(one.exponents.max()) for one in coordinates)
+        scales = np.array([*self.scales.values()])
+        multipliers = np.ldexp(solution.multipliers * scales, -self.unit)
+        found = dict(zip(self.scales, multipliers, strict=True))
+        taus, worst = _taken_by_errors(self, solution) if errors else ({}, 0.0)
         found |= taus
-    for bits in digits:
-        if bits != digits[-1] and not errors:
-            coarse = [_rounded(Q, bits - exponent) for Q in balanced]
-            own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
-            if not program.margins(replace(solution, forms=own), float(claim)).min() > 0:
-                continue
-        log2 = bits + 2 * top
-        whole = [
-            round_form(Q, top - one.exponents, bits - exponent)
-            for one, Q in zip(coordinates, balanced, strict=True)
-        ]
-        nodes = []
-        for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
-            kept = entries_of(drawing, k, states_at(drawing, node))
-            nodes.append(Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept)))
-        values = numerators(np.array([*found.values()]), log2 - exponent)
-        facts = tuple(
-            Multiplier(name, value, target)
-            for (name, b), value in zip(found, values, strict=True)
-            for target in ([None] if b is None else drawing.like(b))
-        )
-        graph = replace(
-            drawing.graph,
-            nodes=tuple(nodes),
-            denominator_log2=max(log2, 0),
-            rate=claim,
-            multipliers=facts,
-        )
-        if graph.stays and graph.stays.leaving and program.time is Time.CONTINUOUS:
-            # How finely stays of any length are enclosed.
-            if (pieces := enough_pieces(drawing.system, graph)) is None:
-                continue
-            graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
-        if program.degree > 1:
-            forms = _round_vanishing(program, graph, solution, bits - exponent, top)
-            graph = replace(graph, vanishing=forms)
-        yield graph
+        for lost, bits in product(LOST_TO_ERRORS if errors else (0.0,), digits):
+            rate = claim
+            if errors:
+                rate = round_rate(sqrt(float(claim) ** 2 + lost * worst), Time.DISCRETE)
+            if errors and rate >= 1:
+                return
+            if bits != digits[-1] and not errors:
+                coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+                own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
+                if not self.margins(replace(solution, forms=own), float(claim)).min() > 0:
+                    continue
+            log2 = bits + 2 * top
+            whole = [
+                round_form(Q, top - one.exponents, bits - exponent)
+                for one, Q in zip(coordinates, balanced, strict=True)
+            ]
+            nodes = []
+            for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
+                kept = entries_of(drawing, k, states_at(drawing, node))
+                nodes.append(
+                    Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept))
+                )
+            values = numerators(np.array([*found.values()]), log2 - exponent)
+            facts = tuple(
+                Multiplier(name, value, target)
+                for (name, b), value in zip(found, values, strict=True)
+                for target in ([None] if b is None else drawing.like(b))
+            )
+            graph = replace(
+                drawing.graph,
+                nodes=tuple(nodes),
+                denominator_log2=max(log2, 0),
+                rate=rate,
+                multipliers=facts,
+            )
+            if graph.stays and graph.stays.leaving and self.time is Time.CONTINUOUS:
+                # How finely stays of any length are enclosed.
+                if (pieces := enough_pieces(drawing.system, graph)) is None:
+                    continue
+                graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
+            if self.degree > 1:
+                forms = _round_vanishing(self, graph, solution, bits - exponent, top)
+                graph = replace(graph, vanishing=forms)
+            yield graph
 
 
 def _round_vanishing(
@@ -396,10 +436,8 @@ def _round_vanishing(
     return tuple(found)
 
 
-def _allow_for(
-    program: FormsProgram, solution: Solution, claim: Fraction
-) -> tuple[dict[Fact, float], Fraction]:
-    """Return multipliers of errors, and what is left of a rate if a form loses what they take.
+def _taken_by_errors(program: FormsProgram, solution: Solution) -> tuple[dict[Fact, float], float]:
+    """Return multipliers of errors, and which share of a form they take in a step.
 
     In the norm of the forms, an error of size ``s`` times that of the state takes ``2 s`` of
     V; with the multiplier ``|C| / |q|`` half of it is taken by either term.
@@ -420,8 +458,7 @@ def _allow_for(
             loss.setdefault(fact[1] or 0, set()).add(fact)
     worst = max(sum(2 * pushed[f] * sizes[f] for f in facts) for facts in loss.values())
     taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
-    left = float(claim) ** 2 + LOST_TO_ERRORS * worst
-    return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+    return taus, worst
 
 
 def _factor(step: Step, degree: int, rate: Fraction) -> int:

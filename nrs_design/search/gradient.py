@@ -14,15 +14,14 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
-from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
+from nrs_design.search.balance import mean_norm_coordinates, own_norms
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.graphs import draw_balanced
-from nrs_design.search.rates import at_own_rate
-from nrs_design.search.rounding import digits, position_of, rate_at
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.rates import at_own_rate, digits
+from nrs_design.work import Allowance
 
 # Work per round and per multiplication in it.
 PER_ROUND = 4e-5
@@ -30,10 +29,6 @@ PER_PRODUCT = 1e-8
 # The largest v is told after so many updates each time, then whenever they have grown by a part.
 TOLD_ONE_BY_ONE = 100
 TOLD_GROWTH = 0.02
-# Where the bisection for the largest rate ends: a share of the limit.
-RATE_RESOLUTION = 1e-3
-# Updates at each rate that it tries.
-RATE_UPDATES = 2000
 
 Matrices = NDArray[np.float64]
 
@@ -47,68 +42,25 @@ class GradientResult:
 
 
 def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
-    """Search for a common quadratic function; then, if asked to, raise its rate."""
+    """Search for a common quadratic function, and claim the rate that it shows itself."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
     # The rungs below need time as well.
-    family = replace(family, allowance=family.allowance.part(0.5))
-    result = find_by_gradient(family)
+    result = find_by_gradient(replace(family, allowance=family.allowance.part(0.5)))
     if result.Q is None:
         return f"not converged after {result.updates} updates"
-    words = f"found after {result.updates} updates"
-    if family.optimize_rate:
-        faster = find_faster_by_gradient(family, result.Q)
-        more = f"with a decay rate near the largest after {faster.updates} more"
-        if faster.Q is not None:
-            yield from _roundings(family, faster.Q, f"{words}, {more}")
-    yield from _roundings(family, result.Q, words)
+    program, words = FormsProgram(draw_balanced(family)), f"found after {result.updates} updates"
+    yield from at_own_rate(program, program.solution_of([result.Q]), family, digits(), words)
     return None
 
 
-def _roundings(family: Family, Q: Matrices, words: str) -> Iterator[Candidate[FormsOnGraph]]:
-    program = FormsProgram(draw_balanced(family))
-    yield from at_own_rate(program, program.solution_of(Q), family, digits(), words)
-
-
 def find_by_gradient(family: Family) -> GradientResult:
-    """Run the iteration in the coordinates of its settings; Q is for those of the family."""
-    T = _coordinates(family, mean_norm(family.matrices, family.system.time))
-    return _iterate_in(T, family, family.matrices, family.gradient)
-
-
-def find_faster_by_gradient(family: Family, found: Matrices) -> GradientResult:
-    """Bisect for the largest rate at which the iteration still ends; return its Q.
-
-    Instead of mean-norm coordinates it takes those in which the best Q so far is round. It ends
-    early when the work is used up; all updates that were made on the way are counted.
-    """
-    settings, time = family.gradient.briefly(RATE_UPDATES), family.system.time
-    best, updates = found, 0
-    low, high = _position(family, best), 1.0
-    while high - low > RATE_RESOLUTION:
-        middle = (low + high) / 2
-        shifted = _shift(family.matrices, time, rate_at(middle, family.limit, time))
-        T = _coordinates(family, best)
-        try:
-            result = _iterate_in(T, family, shifted, settings)
-        except NotAffordableError:
-            break
-        updates += result.updates
-        if result.Q is None:
-            high = middle
-        else:
-            low, best = max(middle, _position(family, result.Q)), result.Q
-    return GradientResult(best, updates)
-
-
-def _iterate_in(
-    T: Matrices, family: Family, matrices: Matrices, settings: Gradient
-) -> GradientResult:
-    """Iterate in z, ``x = T z``, and return Q for x."""
-    inverse, names = np.linalg.inv(T), [mode.name for mode in family.system.modes]
-    start = 0 if settings.start is None else names.index(settings.start)
-    modes = inverse @ matrices @ T
-    found = iterate_gradient(modes, family.system.time, settings, start, family.allowance)
+    """Iterate in the coordinates of the settings, ``x = T z``; Q is for x."""
+    settings, time = family.gradient, family.system.time
+    T, names = _coordinates(family), [mode.name for mode in family.system.modes]
+    inverse, start = np.linalg.inv(T), 0 if settings.start is None else names.index(settings.start)
+    modes = inverse @ family.matrices @ T
+    found = iterate_gradient(modes, time, settings, start, family.allowance)
     return found if found.Q is None else replace(found, Q=inverse.T @ found.Q @ inverse)
 
 
@@ -127,7 +79,7 @@ def iterate_gradient(
     mode, `start`. The coordinates are those of the matrices.
     """
     allowance, m = allowance or Allowance(), len(matrices)
-    Q = own_norm(matrices[start], time)
+    Q = own_norms(matrices[start, None], time)[0]
     order, fulfilled, updates = _order(m, settings), set[int](), 0
     teller = _Teller(settings, matrices, time)
     teller.tell(Q, updates)
@@ -204,34 +156,11 @@ class _Teller:
         self._settings.tell(updates, float(excess.max()))
 
 
-def _shift(matrices: Matrices, time: Time, rate: float) -> Matrices:
-    """Return modes that are stable where the given ones decay at a rate."""
-    if time is Time.DISCRETE:
-        return matrices / rate
-    return np.asarray(matrices + rate * np.eye(matrices.shape[-1]))
-
-
-def _coordinates(family: Family, norm: Matrices) -> Matrices:
-    """Return T such that the iteration runs in z, ``x = T z``; in mean norm, `norm` is round."""
+def _coordinates(family: Family) -> Matrices:
+    """Return T such that the iteration runs in z, ``x = T z``."""
     wanted = family.gradient.coordinates
     if wanted == Coordinates.MEAN_NORM:
-        return round_coordinates(norm)
+        return mean_norm_coordinates(family.matrices, family.system.time)
     if wanted == Coordinates.GIVEN:
         return np.diag(np.ldexp(1.0, -family.exponents))
-    return np.eye(len(norm))
-
-
-def rate_of(matrices: Matrices, Q: Matrices, time: Time) -> float:
-    """Return the best rate that a given Q shows, in 1/s or as the contraction per step."""
-    T = round_coordinates(Q)
-    modes = np.linalg.inv(T) @ matrices @ T
-    if time is Time.DISCRETE:
-        return float(np.linalg.norm(modes, 2, axis=(1, 2)).max())
-    return -float(np.linalg.eigvalsh(modes + np.swapaxes(modes, 1, 2)).max()) / 2
-
-
-def _position(family: Family, Q: Matrices) -> float:
-    """Return where the rate that Q itself shows lies between mere stability and the limit."""
-    time = family.system.time
-    position = position_of(rate_of(family.matrices, Q, time), family.limit, time)
-    return min(max(position, 0.0), 1.0)
+    return np.eye(len(family.exponents))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from math import isfinite
 from typing import Any, Self
@@ -69,10 +69,6 @@ class Gradient:
         defaults = {field.name: field.default for field in fields(cls) if field.name != "tell"}
         readers = {name: _reader(default) for name, default in defaults.items()}
         return cls(**read_named_values(entries, readers, "the gradient iteration"))
-
-    def briefly(self, updates: int) -> Gradient:
-        """Return settings for a try of at most so many updates, which nobody is told about."""
-        return replace(self, max_updates=min(updates, self.max_updates), tell=_tell_nobody)
 
     @property
     def is_told(self) -> bool:

@@ -20,6 +20,7 @@ from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.balance import (
     balance,
     mean_norm,
@@ -28,7 +29,6 @@ from nrs_design.search.balance import (
     separating,
 )
 from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.drawing import Drawing, FormCoordinates
 from nrs_design.search.family import (
     Family,
@@ -46,8 +46,7 @@ from nrs_design.search.polynomial import (
     monomial_weights,
     work_of_checks,
 )
-from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, propose
-from nrs_design.search.rounding import digits, round_rate
+from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, digits, propose, round_rate
 from nrs_design.search.stays import round_stays
 from nrs_design.work import Cost
 
@@ -298,28 +297,25 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
     lost = family.system.contact is not None
     covered = (True,) if family.system.roundings else ()
     coverings = (*covered, False) if lost or not covered else covered
-    return (yield from _together(family, draw_together(family, 1, lost=lost), coverings))
+    drawing = draw_together(family, 1, lost=lost)
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    program = FormsProgram(drawing)
+    return (yield from propose(program, family, family.limit, Rates(share=0.5), coverings))
 
 
 def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all modes, in kept contact, whatever the arithmetic rounds."""
     drawing = draw_balanced(family)
-    if not family.optimize_rate and drawing.is_finite:
-        # The mean of the modes' own norms often does, and takes no solver.
-        with suppress(np.linalg.LinAlgError):
-            program, Q = FormsProgram(drawing), mean_norm(family.matrices, family.system.time)
-            yield from at_own_rate(program, program.solution_of(Q), family, digits())
-    return (yield from _together(family, drawing, (False,)))
-
-
-def _together(
-    family: Family, drawing: Drawing, coverings: Sequence[bool]
-) -> Candidates[FormsOnGraph]:
-    """Ask one program for a form for all modes."""
     if not drawing.is_finite:
         return OUT_OF_RANGE
-    rates = Rates(share=0.5)
-    return (yield from propose(FormsProgram(drawing), family, family.limit, rates, coverings))
+    program = FormsProgram(drawing)
+    if not family.optimize_rate:
+        # The mean of the modes' own norms often does, and takes no solver.
+        with suppress(np.linalg.LinAlgError):
+            Q = mean_norm(family.matrices, family.system.time)
+            yield from at_own_rate(program, program.solution_of([Q]), family, digits())
+    return (yield from propose(program, family, family.limit, Rates(share=0.5)))
 
 
 def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:

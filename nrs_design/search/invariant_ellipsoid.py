@@ -21,7 +21,7 @@ from nrs_design.proof.evidence import InvariantEllipsoid, OffsetEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import ROUNDING, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, separating_coordinates, to_floats
 from nrs_design.search.one_form import (
     SHARE,

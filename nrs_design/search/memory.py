@@ -19,9 +19,9 @@ from nrs_design.proof.evidence import FormsOnGraph, GrowingSequence
 from nrs_design.proof.evidence.graph import MAX_MONOMIALS, MAX_SETS, MODES, Arc, Node
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
 from nrs_design.search.balance import balance, round_coordinates
 from nrs_design.search.branches import StepGraph, best_words
-from nrs_design.search.candidates import OUT_OF_RANGE, Candidates
 from nrs_design.search.drawing import Drawing, Solution
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
@@ -33,9 +33,8 @@ from nrs_design.search.graphs import (
     limit_of_cycles,
 )
 from nrs_design.search.period import NOTHING_GROWS, powers
-from nrs_design.search.polynomial import PER_CHECK, form_sizes
+from nrs_design.search.polynomial import PER_CHECK, form_sizes, graph_cost
 from nrs_design.search.rates import POLYNOMIAL, propose
-from nrs_design.search.sdp import program_cost
 from nrs_design.work import Allowance, Cost
 
 # The check follows sets of nodes, of which there are as many as words of any length up to that of
@@ -120,7 +119,7 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
     In discrete time, and no fewer steps than `first`.
     """
     found = dict[int, Cost]()
-    order, own, forms = form_sizes(system.order, degree)
+    order, *_ = form_sizes(system.order, degree)
     names = [mode.name for mode in system.modes]
     if not all(any(name in ends for ends in following(system).values()) for name in names):
         # A mode that nothing leads to ends no word, and a run may begin in it.
@@ -129,9 +128,7 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
         if (counts := count_words(system, length)) is None:
             return found
         nodes, edges = counts
-        shared = own * nodes + 1
-        cones = [(order, own)] * (2 * nodes) + [(order, 2 * own + forms)] * edges
-        cost = program_cost(shared + forms * edges, shared, cones)
+        cost, _ = graph_cost(system.order, degree, nodes, edges)
         checked = cost.work + 2 * edges * PER_CHECK * order**2
         found[length] = replace(cost, work=checked)
     return found

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import time_unit
-from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.rounding import digits
+from nrs_design.search.rates import digits
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
 from nrs_design.work import Allowance
 

@@ -21,9 +21,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.steps import CONTACT, FREE, ROUNDING, Acting, Step, steps_of
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.drawing import FloatStep
-from nrs_design.search.family import NEARLY
-from nrs_design.search.rounding import numerators, unscale
+from nrs_design.search.drawing import Error, FloatStep, Inequality, distinct
+from nrs_design.search.rates import numerators, unscale
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.work import Allowance
 
@@ -52,69 +51,41 @@ class StepUnits:
 
     def balanced(self, steps: Sequence[Step]) -> StepUnits:
         """Choose units of errors: what they do to the state is as large as what it does to them."""
-        conditions = [StepInequality.of(step, self) for step in steps]
         count = max((len(step.errors) for step in steps), default=0)
         pushed, sizes = np.zeros(count), np.zeros(count)
-        for condition in conditions:
-            for k, (column, size) in enumerate(condition.errors):
-                pushed[k], sizes[k] = max(pushed[k], column), max(sizes[k], size)
+        for step in steps:
+            for k, error in enumerate(_inequality(step, self).errors):
+                pushed[k] = max(pushed[k], float(np.linalg.norm(error.column)))
+                sizes[k] = max(sizes[k], float(np.linalg.norm(error.q)))
         units = np.divide(sizes, pushed, out=np.ones(count), where=(sizes > 0) & (pushed > 0))
         others = self.others.copy()
         others[len(others) - count :] = np.sqrt(units)
         return replace(self, others=others)
 
 
-@dataclass(frozen=True)
-class StepInequality:
-    """What one step asks of the form."""
+def _inequality(step: Step, own: StepUnits) -> Inequality:
+    """Return what a step asks of the form, with multipliers of all facts.
 
-    kind: tuple[object, ...]
-    states: int
-    M: Array
-    facts: dict[str, Array]  # What each multiplier adds
-    errors: tuple[tuple[float, float], ...]  # How large: what each does, and what it comes from
-    is_flow: bool
-
-    @classmethod
-    def of(cls, step: Step, own: StepUnits) -> StepInequality:
-        """Convert a step; a disturbance with a weight has the fact that it is at most one."""
-        raw, n, after = FloatStep.of(step), step.states, len(step.rows)
-        M = np.linalg.inv(own.T[:after, :after]) @ own.rows(raw.M, n)
-        unit, facts = np.eye(M.shape[1]), dict[str, Array]()
-        last = own.rows(unit[n - 1], n)
-        for k, _ in enumerate(filter(None, step.weights)):
-            facts[f"{SHARE} {k + 1}"] = np.outer(unit[n + k], unit[n + k])
-        for name, c in raw.crossings:
-            facts[name] = _both(last, own.rows(c, n))
-        for name, left, right in raw.products:
-            facts[name] = -_both(own.rows(left, n), own.rows(right, n))
-        errors = []
-        for name, i, q in raw.errors:
-            row, e = own.rows(q, n), own.rows(unit[i], n)
-            facts[name] = np.outer(e, e) - np.outer(row, row)
-            errors.append((float(np.linalg.norm(M[:, i])), float(np.linalg.norm(row))))
-        kind = step.source, step.target, after, len(facts), step.is_flow
-        return cls(kind, n, M, facts, tuple(errors), step.is_flow)
-
-    def images(self, basis: Array, share: float) -> Array:
-        """Return what it makes of every form of a basis."""
-        n, M = self.states, self.M
-        before, form = basis[:, :n, :n], np.zeros((len(basis), *[M.shape[1]] * 2))
-        if self.is_flow:
-            form[:, :n] = -(before @ M)
-            form += np.swapaxes(form, 1, 2)
-            form[:, :n, :n] -= share * before
-            return form
-        form[:, :n, :n] = (1 - share) * before
-        return np.asarray(form - M.T @ basis[:, : len(M), : len(M)] @ M)
-
-    def is_near(self, other: StepInequality) -> bool:
-        """Tell whether floating point can hardly tell it from another."""
-        numbers = ([one.M, *one.facts.values()] for one in (self, other))
-        return self.kind == other.kind and all(
-            np.abs(one - two).max() <= NEARLY * np.abs(one).max()
-            for one, two in zip(*numbers, strict=True)
-        )
+    A disturbance with a weight has the fact that it is at most one.
+    """
+    raw, n, after = FloatStep.of(step), step.states, len(step.rows)
+    M = np.asarray(np.linalg.inv(own.T[:after, :after]) @ own.rows(raw.M, n), dtype=float)
+    unit, facts = np.eye(M.shape[1]), dict[str, Array]()
+    last = own.rows(unit[n - 1], n)
+    for k, _ in enumerate(filter(None, step.weights)):
+        facts[f"{SHARE} {k + 1}"] = np.outer(unit[n + k], unit[n + k])
+    for name, c in raw.crossings:
+        facts[name] = _both(last, own.rows(c, n))
+    for name, left, right in raw.products:
+        facts[name] = -_both(own.rows(left, n), own.rows(right, n))
+    errors = []
+    for name, i, q in raw.errors:
+        row, e = own.rows(q, n), own.rows(unit[i], n)
+        facts[name] = np.outer(e, e) - np.outer(row, row)
+        errors.append(Error((name, None), M[:, i], row))
+    forms = tuple(((name, None), form) for name, form in facts.items())
+    kept, left_over = np.arange(n), np.arange(after)
+    return Inequality(0, kept, 0, left_over, M, forms, tuple(errors), step.is_flow, 0.0, True)
 
 
 def _both(left: Array, right: Array) -> Array:
@@ -190,7 +161,7 @@ class OneForm:
     """The program of a form, of steps that floating point can tell apart."""
 
     order: int  # Entries of z that the form is of
-    conditions: tuple[StepInequality, ...]
+    conditions: tuple[Inequality, ...]
     stands: dict[str, str]  # For every multiplier, that of the step which stands for its own
     scales: dict[str, float]  # Of the multipliers that are solved for
 
@@ -199,20 +170,23 @@ class OneForm:
         cls, steps: Iterable[Step], own: StepUnits, more: Mapping[str, float] | None = None
     ) -> OneForm:
         """Take the conditions of steps, and `more` multipliers with their scales."""
-        kept, stands, scales = list[StepInequality](), dict[str, str](), dict[str, float]()
-        for step in steps:
-            condition = StepInequality.of(step, own)
-            like = next((other for other in kept if other.is_near(condition)), None)
-            if like is None:
-                kept.append(condition)
-                like = condition
-            for name, other in zip(condition.facts, like.facts, strict=True):
+        edges = [_inequality(step, own) for step in steps]
+        # Like steps have facts of other names.
+        unnamed = [
+            replace(edge, facts=tuple((("", k), form) for k, (_, form) in enumerate(edge.facts)))
+            for edge in edges
+        ]
+        _, found = distinct(unnamed)
+        kept = {k: edges[found.index(k)] for k in sorted({*found})}
+        stands, scales = dict[str, str](), dict[str, float]()
+        for edge, k in zip(edges, found, strict=True):
+            for ((name, _), _), ((other, _), form) in zip(edge.facts, kept[k].facts, strict=True):
                 stands.setdefault(name, other)
-        for condition in kept:
-            for name, form in condition.facts.items():
-                scales[name] = max(scales.get(name, 0.0), float(np.abs(form).max()))
+                scales[other] = max(scales.get(other, 0.0), float(np.abs(form).max()))
         scales = {name: scale or 1.0 for name, scale in scales.items()} | dict(more or {})
-        return cls(len(own.T), tuple(kept), stands | {name: name for name in more or {}}, scales)
+        return cls(
+            len(own.T), tuple(kept.values()), stands | {name: name for name in more or {}}, scales
+        )
 
     @property
     def basis(self) -> Array:
@@ -232,23 +206,28 @@ class OneForm:
         last = len(basis) + len(place)
         program = SemidefiniteProgram(last + 1)
 
-        def add(
-            constant: Array, form: Array, facts: Mapping[str, Array], corner: Array | None
-        ) -> None:
-            images = [(0, packed_columns(form))]
-            for name, own in facts.items():
-                images.append((place[name], packed_columns(own[None] / self.scales[name])))
+        def of_fact(name: str, form: Array) -> tuple[int, Array]:
+            return place[name], packed_columns(form[None] / self.scales[name])
+
+        for edge in self.conditions:
+            keeps, counts = (1.0, share) if edge.is_flow else (1 - share, 1.0)
+            images = edge.images((0,), (self.order,), keeps, counts)
+            images += [of_fact(name, form) for (name, _), form in edge.facts]
+            spared = np.eye(edge.size) * (level is not None)
+            images.append((last, packed_columns(-spared[None])))
+            program.add(0 * spared, images)
+        for bound in bounds:
+            images, constant, corner = (
+                [(0, packed_columns(bound.form))],
+                bound.constant,
+                bound.corner,
+            )
+            images += [of_fact(*fact) for fact in bound.multipliers.items()]
             if corner is not None:
                 spared = corner if level is None else np.eye(len(corner))
                 images.append((last, packed_columns(-spared[None])))
                 constant = constant if level is None else constant + level * corner
             program.add(constant, images)
-
-        for item in self.conditions:
-            images = item.images(basis, share)
-            add(np.zeros_like(images[0]), images, item.facts, np.zeros_like(images[0]))
-        for bound in bounds:
-            add(bound.constant, bound.form, bound.multipliers, bound.corner)
         one = np.ones((1, 1))
         for column in place.values():
             program.add(0 * one, [(column, one)])

@@ -14,11 +14,11 @@ from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.branches import MOST_EDGES, StepGraph, best_words, turns_graph
-from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.graph import Cycle, Graph, growing_cycles
-from nrs_design.search.rounding import digits
+from nrs_design.search.rates import digits
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]

@@ -59,12 +59,17 @@ def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
 
 def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
     """Predict what a form of degree 2d for each mode takes; say for what."""
-    order, own, forms = form_sizes(max(mode.A.shape[0] for mode in system.modes), degree)
-    decreases = _count_decreases(system)
-    shared = own * len(system.modes) + 1
-    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
+    order = max(mode.A.shape[0] for mode in system.modes)
+    return graph_cost(order, degree, len(system.modes), _count_decreases(system))
+
+
+def graph_cost(variables: int, degree: int, nodes: int, edges: int) -> tuple[Cost, str]:
+    """Predict what forms of degree 2d take; say for what."""
+    order, own, forms = form_sizes(variables, degree)
+    shared, cones = own * nodes + 1, [(order, own)] * (2 * nodes)
+    cones += [(order, 2 * own + forms)] * edges
     what = f"a program with {len(cones)} blocks of order {order}"
-    return program_cost(shared + forms * decreases, shared, cones), what
+    return program_cost(shared + forms * edges, shared, cones), what
 
 
 def work_of_checks(system: SwitchedSystem, degree: int) -> float:

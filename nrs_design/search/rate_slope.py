@@ -23,7 +23,7 @@ from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import DualSolution, FormsProgram
 from nrs_design.search.graphs import draw_together
 from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_share
-from nrs_design.search.rung import Facts
+from nrs_design.search.ladder import Facts
 from nrs_design.work import Allowance
 
 RESOLUTION = 5e-4

@@ -6,14 +6,14 @@ takes to solve it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from typing import Any
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.search.interior_point import ConeGroup
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
@@ -37,12 +37,7 @@ BYTES_PER_FACTOR_ENTRY = 20
 
 def symmetric_basis(n: int) -> Array:
     """Return the orthonormal basis of symmetric n x n matrices, in the solver's order."""
-    i, j = triangle(n)
-    basis = np.zeros((len(i), n, n))
-    weight = np.where(i == j, 1.0, np.sqrt(0.5))
-    basis[np.arange(len(i)), i, j] = weight
-    basis[np.arange(len(i)), j, i] = weight
-    return basis
+    return unpack(np.eye(n * (n + 1) // 2), n)
 
 
 def pack(matrices: Array) -> Array:
@@ -104,37 +99,21 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
 
 
 @dataclass(frozen=True, slots=True)
-class Sparse:
-    """A matrix by columns, as Clarabel reads it; to load SciPy for it takes longer than a solve."""
-
-    data: Array
-    indices: NDArray[np.int32]  # Rows of the entries, in order in each column
-    indptr: NDArray[np.int32]  # Where columns begin
-    shape: tuple[int, int]
-    has_canonical_format: bool = True
-
-    @property
-    def nnz(self) -> int:
-        """Number of entries."""
-        return len(self.data)
-
-    @classmethod
-    def of(
-        cls, values: Array, rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]
-    ) -> Sparse:
-        """Put entries in order; what is given twice counts as their sum."""
-        places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
-        data: Array = np.bincount(entry, values, len(places)).astype(float)
-        ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
-        return cls(data, (places % shape[0]).astype(np.int32), ends.astype(np.int32), shape)
-
-
-@dataclass(frozen=True, slots=True)
 class Maximum:
     """What the solver returned, whatever its status."""
 
     x: Array  # Shape (N,). The unknowns.
     duals: list[Array]  # How much a unit of each block adds to the margin
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """What must be positive semidefinite, packed."""
+
+    order: int
+    constant: Array  # Shape (s,)
+    unknowns: NDArray[np.int64]  # Those that it depends on, shape (k,)
+    images: Array  # Shape (s, k)
 
 
 class SemidefiniteProgram:
@@ -145,27 +124,41 @@ class SemidefiniteProgram:
 
     def __init__(self, unknowns: int) -> None:
         self.unknowns = unknowns
-        self._offsets, self._count = list[Array](), 0
-        self._sizes, self._columns = list[int](), list[NDArray[np.int64]]()
-        self._entries: list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]] = []
+        self._blocks = list[Block]()
 
-    def add(self, constant: Array, images: Iterable[tuple[int, Array]]) -> None:
+    def add(self, constant: Array, images: Sequence[tuple[int, Array]]) -> None:
         """Add a block: its constant, and packed forms of unknowns as columns, from a first one."""
-        columns = list[NDArray[np.int64]]()
-        for first, image in images:
-            row, column = np.nonzero(image)
-            self._entries.append((-image[row, column], self._count + row, first + column))
-            columns.append(first + column)
-        self._offsets.append(pack(constant))
-        self._sizes.append(len(constant))
-        self._columns.append(np.unique(np.concatenate(columns)))
-        self._count += len(self._offsets[-1])
+        places = [range(first, first + image.shape[1]) for first, image in images]
+        # NumPy's own union loads what takes longer than a common quadratic function.
+        unknowns = np.array(sorted({k for place in places for k in place}))
+        offset = pack(constant)
+        whole = np.zeros((len(offset), len(unknowns)))
+        for place, (_, image) in zip(places, images, strict=True):
+            whole[:, np.searchsorted(unknowns, place)] += image
+        used = whole.any(axis=0)
+        self._blocks.append(Block(len(constant), offset, unknowns[used], whole[:, used]))
 
     def cost(self) -> Cost:
         """Predict what a solution takes: unknowns of one block alone are eliminated with it."""
-        blocks = np.bincount(np.concatenate(self._columns), minlength=self.unknowns)
-        cones = zip(self._sizes, map(len, self._columns), strict=True)
-        return program_cost(self.unknowns, int((blocks > 1).sum()), cones)
+        every = np.concatenate([block.unknowns for block in self._blocks])
+        shared = np.bincount(every, minlength=self.unknowns) > 1
+        cones = ((block.order, len(block.unknowns)) for block in self._blocks)
+        return program_cost(self.unknowns, int(shared.sum()), cones)
+
+    @cached_property
+    def groups(self) -> list[ConeGroup]:
+        """Blocks of one size in which the same unknowns enter are a group."""
+        alike: dict[object, list[Block]] = {}
+        for block in self._blocks:
+            alike.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
+        return [
+            ConeGroup(
+                own[0].unknowns,
+                unpack(np.array([block.constant for block in own]), own[0].order),
+                unpack(np.array([block.images.T for block in own]), own[0].order),
+            )
+            for own in alike.values()
+        ]
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
         """Return what the solver returned, whatever its status; None if that is not finite.
@@ -173,23 +166,28 @@ class SemidefiniteProgram:
         The steps that it made are charged.
         """
         import clarabel
+        from scipy.sparse import csc_matrix
 
-        cost, count = self.cost(), self.unknowns
-        allowance.take(cost, f"a program of {count} unknowns and {len(self._sizes)} blocks")
+        cost, count, blocks = self.cost(), self.unknowns, self._blocks
+        allowance.take(cost, f"a program of {count} unknowns and {len(blocks)} blocks")
         more = allowance.left / cost.per_step
-        values, rows, columns = (np.concatenate(part) for part in zip(*self._entries, strict=True))
-        matrix = Sparse.of(values, rows, columns, (self._count, count))
-        objective, none = np.zeros(count), np.zeros(0)
+        first = np.cumsum([0, *(len(block.constant) for block in blocks)])
+        entries = list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]]()
+        for start, block in zip(first, blocks, strict=False):
+            row, column = np.nonzero(block.images)
+            entries.append((-block.images[row, column], start + row, block.unknowns[column]))
+        values, rows, columns = (np.concatenate(part) for part in zip(*entries, strict=True))
+        matrix = csc_matrix((values, (rows, columns)), (int(first[-1]), count))
+        objective, quadratic = np.zeros(count), csc_matrix((count, count))
         objective[-1] = -1.0
-        quadratic = Sparse.of(none, none, none, (count, count))
-        cones = [clarabel.PSDTriangleConeT(n) for n in self._sizes]
+        cones = [clarabel.PSDTriangleConeT(block.order) for block in blocks]
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_threads = 1
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
         settings.max_iter = STEPS + int(min(more, MOST_STEPS - STEPS))
         settings.time_limit = allowance.fuse.left
-        given = quadratic, objective, matrix, np.concatenate(self._offsets), cones
+        given = quadratic, objective, matrix, np.concatenate([b.constant for b in blocks]), cones
         solution = clarabel.DefaultSolver(*given, settings).solve()
         if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
             # It fails at once on a few programs that it has scaled, and solves them unscaled.
@@ -199,9 +197,8 @@ class SemidefiniteProgram:
         x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
         if x.shape != (count,) or not (np.isfinite(x).all() and np.isfinite(z).all()):
             return None
-        ends = np.cumsum([n * (n + 1) // 2 for n in self._sizes])[:-1]
-        duals = zip(np.split(z, ends), self._sizes, strict=True)
-        return Maximum(x, [unpack(part, n) for part, n in duals])
+        duals = zip(np.split(z, first[1:-1]), blocks, strict=True)
+        return Maximum(x, [unpack(part, block.order) for part, block in duals])
 
 
 def packed_columns(forms: Array) -> Array:

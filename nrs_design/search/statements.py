@@ -10,8 +10,7 @@ from nrs_design.progress import Progress
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.acceptance import attempted
-from nrs_design.search.candidates import Candidates
+from nrs_design.search.acceptance import Candidates, attempted
 from nrs_design.search.certification import Attempt
 from nrs_design.work import Allowance, NotAffordableError
 

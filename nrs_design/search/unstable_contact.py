@@ -21,8 +21,8 @@ from nrs_design.proof.evidence.growth import Steps, growth_matrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import NOWHERE
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import scale_states
-from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family, distinct_modes
 from nrs_design.work import Allowance, Cost
 

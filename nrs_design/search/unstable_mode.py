@@ -12,8 +12,8 @@ from nrs_design.proof.evidence.growing_sequence import decides, staying
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import affordable, is_stable
+from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import scale_states
-from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.work import Cost
 

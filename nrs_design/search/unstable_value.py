@@ -16,7 +16,7 @@ from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.period import search_period
 from nrs_design.work import Allowance, Cost

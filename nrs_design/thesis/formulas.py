@@ -20,7 +20,7 @@ from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.kinematics import inverse_kinematics
 from nrs_design.robot.models.robot import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
-from nrs_design.search.balance import own_norm
+from nrs_design.search.balance import own_norms
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found
 from nrs_design.thesis.switching import family, impedance_rows, printed_rows
@@ -131,7 +131,7 @@ def _decay() -> bool:
 def _update() -> bool:
     A = np.array(impedance_rows(thesis.SOFT, "0.01", "2.15", "force"), dtype=float)
     # Half of what 5.21 asks for: the print makes no update here, though 5.21 does not hold.
-    Q = own_norm(A, Time.CONTINUOUS) / 2
+    Q = own_norms(A[None], Time.CONTINUOUS)[0] / 2
     v = float(np.linalg.eigvalsh(A.T @ Q + Q @ A + np.eye(4))[-1])
     return 0 < v < 1
 

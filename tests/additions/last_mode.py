@@ -11,9 +11,9 @@ import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
 from nrs_design.proof.evidence.graph import MODES, Arc, FormsOnGraph, Node
-from nrs_design.search.candidates import Candidate, Candidates
+from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.search.rounding import unscale
+from nrs_design.search.rates import unscale
 
 BITS = 30
 

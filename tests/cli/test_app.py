@@ -53,10 +53,11 @@ def test_only_the_command_asked_for_is_imported(tmp_path):
     assert commands & set(facts["modules"]) == {"nrs_design.cli.verify"}
 
 
-# What checks a certificate by itself: the program, the file format, the proof.
-# Of the models, where constant ranges are cut, if they are.
+# What checks a certificate by itself: the program, the file format, the proof; and the series of
+# the second opinion on exponentials.
 CHECKING = (
     "cli",
+    "controllers",
     "certificates",
     "proof",
     "models",

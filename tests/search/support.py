@@ -10,8 +10,7 @@ from nrs_design.loop.assemble import assemble
 from nrs_design.pipeline.runs import run_design
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.candidates import Candidates
+from nrs_design.search.acceptance import Candidates, first_accepted
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.spec import LoadedSpec, parse_spec
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.switching import Stay, Switching
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram

@@ -18,8 +18,7 @@ from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search import gradient, ladder, unstable_mode
-from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.candidates import Candidate
+from nrs_design.search.acceptance import Candidate, first_accepted
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.drawing import Solution

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
+from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.constants_quadratic import search_constants_quadratic
 from tests.proof.systems import companion, family, oscillator, shears
 from tests.proof.truth import holds

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.search import unstable_value as mixture
-from nrs_design.search.acceptance import first_accepted
-from nrs_design.search.candidates import Candidate
+from nrs_design.search.acceptance import Candidate, first_accepted
 from nrs_design.search.family import Family
 from nrs_design.search.unstable_value import search_mixture
 from nrs_design.work import Allowance

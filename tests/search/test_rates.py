@@ -5,18 +5,20 @@ from dataclasses import dataclass, field, replace
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.candidates import NO_MARGIN
+from nrs_design.search.acceptance import NO_MARGIN
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import draw_balanced
 from nrs_design.search.rates import (
+    BACK_OFFS,
     RESOLUTION,
     SMALLEST,
     Rates,
     bisect_position,
     propose,
+    rate_at,
+    round_rate,
 )
-from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
 from nrs_design.work import Allowance, Cost, NotAffordableError
 from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
@@ -168,7 +170,7 @@ def test_the_search_for_the_best_rate_takes_half_of_the_work(always):
 def test_a_bisection_without_work_keeps_what_it_has():
     assert largest_position(Allowance(0.0)) == 0.0
     # Enough for some of the steps of the bisection only.
-    allowance = Allowance(0.01)
+    allowance = Allowance(0.03)
     some = largest_position(allowance)
     assert 0.0 < some < largest_position()
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.rounding import (
+from nrs_design.search.rates import (
     BACK_OFFS,
     BITS,
     RATE_BITS,

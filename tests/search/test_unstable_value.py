@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.candidates import OUT_OF_RANGE
+from nrs_design.search.acceptance import OUT_OF_RANGE
 from nrs_design.search.family import Family
 from nrs_design.search.unstable_value import search_switching_at_values, search_value
 from tests.proof.systems import family, hidden_shears, hidden_value

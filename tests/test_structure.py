@@ -343,8 +343,9 @@ def test_a_search_proposes_and_never_checks():
     checking = {name for name in searches if uses(name, "find_fault")}
     place = "nrs_design.search.acceptance"
     assert checking == {place}
-    asking = {item.source for item in ours() if item.target == place}
-    assert asking & searches == {"nrs_design.search.certify", "nrs_design.search.statements"}
+    takers = ("take_candidate", "first_accepted", "attempted")
+    taking = {name for name in searches for word in takers if uses(name, word)}
+    assert taking == {place, "nrs_design.search.certify", "nrs_design.search.statements"}
     assert searches.isdisjoint(
         item.source for item in ours() if item.target == "nrs_design.search.certify"
     )

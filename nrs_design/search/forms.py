@@ -146,7 +146,7 @@ class FormsProgram:
         margin well below that of the others.
         """
         while True:
-            solution = self._solve_for(self.active, rate, allowance)
+            solution = self.solve_for(self.active, rate, allowance)
             if solution is None or len(self.active) == len(self.edges):
                 return solution
             margins, known = self.margins(solution, rate), set(self.active)
@@ -159,7 +159,7 @@ class FormsProgram:
                 return solution
             self.active = sorted([*known, *added[: len(known)]])
 
-    def _solve_for(
+    def solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance
     ) -> Solution | None:
         """Solve for some of the edges; None if there is no margin.

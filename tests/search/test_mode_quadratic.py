@@ -40,7 +40,7 @@ def test_no_ends_of_constant_parameters():
 
 def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):
     """It gives the functions for no decay at every rate: what is proved is what these show."""
-    true, kept = forms.FormsProgram._solve_for, []
+    true, kept = forms.FormsProgram.solve_for, []
 
     def content(*arguments, **options):
         kept.append(kept[0] if kept else true(*arguments, **options))
@@ -48,7 +48,7 @@ def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):
 
     system = geromel_colaneri("2.76")
     honest = found(search_modes, system)
-    monkeypatch.setattr(forms.FormsProgram, "_solve_for", content)
+    monkeypatch.setattr(forms.FormsProgram, "solve_for", content)
     claimed = [c.evidence.rate for c in search_modes(Family.of(system))]
     assert max(claimed) > 100 * honest.rate
     evidence = found(search_modes, system)

@@ -51,7 +51,8 @@ def map_in_processes(
     from concurrent.futures.process import BrokenProcessPool
     from multiprocessing import active_children, get_context
 
-    # Workers start at any time from here on, so the rule stays.
+    # Workers start at any time until the last result is there.
+    before = dict(os.environ)
     os.environ |= SAFE_PATH
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin)
     try:
@@ -68,6 +69,8 @@ def map_in_processes(
         for worker in active_children():
             worker.terminate()
         pool.shutdown(cancel_futures=True)
+        for name in SAFE_PATH.keys() - before.keys():
+            del os.environ[name]
 
 
 def _begin() -> None:

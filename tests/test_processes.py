@@ -12,7 +12,9 @@ from tests.work import killed, square
 
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_every_point_comes_once(jobs):
+    before = dict(os.environ)
     found = list(map_in_processes(square, [3, 4, 5], jobs))
+    assert dict(os.environ) == before
     assert sorted(found) == [(0, 9), (1, 16), (2, 25)]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -18,7 +17,7 @@ def on_turn(system: SwitchedSystem, clock: Clock, kind: int) -> SwitchedSystem:
     """Return a system whose modes take turns with the modes of one kind alone."""
     names = [mode.name for mode in system.every_mode]
     kept = (name for name, own in zip(names, clock.kind_of(names), strict=True) if own == kind)
-    return replace(system.only(frozenset(kept)), clock=None)
+    return system.only(frozenset(kept))
 
 
 def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:

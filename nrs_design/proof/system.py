@@ -73,18 +73,15 @@ class SwitchedSystem:
         )
 
     def only(self, names: Collection[str]) -> SwitchedSystem:
-        """TRUSTED: return the system with some of its modes, in contact and free.
+        """TRUSTED: return the system with some of its modes, in contact and free, without turns.
 
         What disturbs it stays: the rows of roundings are over the states and all disturbances.
         """
         kept = [mode.name in names for mode in self.every_mode]
         flying = kept[len(self.modes) :]
-        contact, clock = self.contact, self.clock
+        contact = self.contact
         if contact is not None:
             contact = replace(contact, free=tuple(compress(contact.free, flying)))
-        if clock is not None:
-            kinds = [tuple(n for n in own if n in names) for own in (clock.first, *clock.more)]
-            clock = replace(clock, first=kinds[0], more=tuple(kinds[1:]))
         roundings = (
             replace(
                 item,
@@ -100,7 +97,7 @@ class SwitchedSystem:
             self,
             modes=tuple(compress(self.modes, kept)),
             contact=contact,
-            clock=clock,
+            clock=None,
             roundings=tuple(roundings),
             channels=tuple(channels),
             saturation=None,

@@ -60,6 +60,8 @@ def test_a_shift_is_added_to_the_diagonal():
         ((-1, 0, "0.99", 1, 1000, 7389), False),
         ((1, 0, 0, "0.01", 1000, 1000), False),
         ((1, 0, 0, "0.01", 1021, 1000), True),
+        # exp(4) is 54.6, and exp(2) in the middle 7.39.
+        ((1, 0, 0, 2, 1000, 20), False),
     ],
 )
 def test_the_form_of_a_stay_against_the_exponential(given, shown):
@@ -89,13 +91,14 @@ def test_between_the_ends_of_a_stay_a_form_may_rise(first, shown):
     step = EnclosedStep("", edge, middle - half, middle + half)
     form = step.form(before, after, Fraction(0))
     assert len(form) == 4
+    assert not any(any(row[2:]) for row in form[:2])
     assert is_positive_definite(form) is shown
 
 
 def test_forms_of_steps_by_hand():
     """``rho^2k Q0 - (G A^k)^2 Q1`` for A = 1/3, G = 2/5, rho = 3/4, over ``(5 3^k 4^k)^2``."""
     resets = resets_between(("m0", "m1", [["2/5"]]))
-    rules = replace(left_within((2, 3), (1, None)), resets=resets)
+    rules = replace(left_within((2, 3), (1, 4)), resets=resets)
     system = family([["1/3"]], [["1/2"]], **IN_STEPS, switching=rules)
     evidence = scalars(7, 11, rate=Fraction(3, 4), leaving=("m0",))
     first, second, m1, two, three, back = (form[0][0] for _, form in evidence.forms(system))
@@ -127,7 +130,8 @@ def test_the_state_moves_before_it_is_reset():
 
 def test_pieces_of_a_stay():
     system = family([[1]], [[-2]], switching=left_within((HALF, 2), (3, 4)))
-    steps = steps_of_stays(system, Stays(("m0",), 3), lambda count: 1)
+    steps = list(steps_of_stays(system, Stays(("m0",), 3), lambda count: 1))
+    assert all(step.time for step in steps)
     asked = [(s.mode, s.begin, s.end) for s in steps if isinstance(s, EnclosedStep)]
     ends = [HALF, Fraction(1), Fraction(3, 2), Fraction(2)]
     pieces = [("m0", *pair) for pair in pairwise(ends)]

@@ -103,6 +103,15 @@ def test_multipliers_of_each_corner_alone_prove_nothing():
     assert certify(system).verdict is not Verdict.PROVED
 
 
+def test_the_claim_is_that_of_its_time():
+    """Steps decrease by rho^t, and continuous time by exp(-alpha t)."""
+    for kind, law in zip(KINDS, ("x+ = A x,", "x' = A x,"), strict=True):
+        system, evidence = genuine(kind)
+        claim = evidence.claim(system)
+        assert law in claim
+        assert ("rho^t" in claim) == ("x+" in law) != ("exp(-alpha t)" in claim)
+
+
 def test_one_mode_at_all_corners_is_stable_or_not():
     """A mode that no constant parameter is in has to decrease all functions."""
     system, _ = genuine("constants-quadratic")

@@ -31,7 +31,7 @@ from nrs_design.loop.given_matrices import (
     modes_with_misses,
     read_parameters,
 )
-from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter, grouped
+from nrs_design.loop.located import ConstantParameter, LocatedMode, grouped
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -135,7 +135,7 @@ def assemble(
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
-    modes: Sequence[AbstractLocatedMode]
+    modes: Sequence[LocatedMode]
     if sampling is None:
         system, modes = _assemble_continuous(conditions, plant, design, constants)
     else:
@@ -177,7 +177,7 @@ def _assemble_continuous(
     plant: Plant,
     design: ControllerDesign,
     constants: Sequence[ConstantParameter],
-) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
+) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     from nrs_design.loop.close_loop import check_memory, close_loop, with_command
 
     state, limited = state_of(conditions, plant, design), conditions.initial_force is not None

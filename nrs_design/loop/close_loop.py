@@ -29,7 +29,8 @@ from nrs_design.loop.free_motion import (
 )
 from nrs_design.loop.located import (
     ConstantParameter,
-    MatrixMode,
+    LocatedMode,
+    Period,
     Spot,
     enclosures_of,
     grouped,
@@ -56,7 +57,7 @@ def close_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     limited: bool = False,
-) -> tuple[SwitchedSystem, Sequence[MatrixMode]]:
+) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Assemble every mode of an interaction design.
 
     Without rules any controller may follow any other at any time. Contact, losable or kept, may by
@@ -68,7 +69,7 @@ def close_loop(
     sprung = any(controller.law.spring for controller in controllers)
     free = sprung and adds_free_motion(state, contact, rules)
     losable = None if sprung or contact == "kept" else lost_contact(state, contact)
-    items: list[MatrixMode] = []
+    items: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
     for c in controllers:
         own = [*_in_contact(c, state, constants, by_contact=rules.names_contacts)]
@@ -118,7 +119,7 @@ def _in_contact(
     constants: Sequence[ConstantParameter],
     *,
     by_contact: bool,
-) -> Iterator[MatrixMode]:
+) -> Iterator[LocatedMode]:
     """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
     by_name = {environment.name: environment for environment in state.environments}
     touched: list[Environment | None] = [by_name[name] for name in controller.contacts]
@@ -133,11 +134,11 @@ def _in_contact(
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
         own = [constant for constant in constants if constant.contact in known]
         for labels, rows in box.corners(partial(state.rows, controller.law, e), name):
-            yield MatrixMode(
+            yield LocatedMode(
                 name if by_contact else controller.name,
                 Spot.named(controller.name, *where) + spot_of(labels, real, own),
                 "" if e is None else e.name,
-                RationalMatrix.from_rows(rows),
+                Period(rows),
             )
 
 

@@ -10,7 +10,7 @@ from math import prod
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter
+from nrs_design.loop.located import ConstantParameter, LocatedMode
 from nrs_design.models.drive import GAIN
 from nrs_design.models.interval import Interval
 from nrs_design.proof.switching import FixedParameter
@@ -92,7 +92,7 @@ def _between_ends(
 
 
 def corner_counts(
-    modes: Iterable[AbstractLocatedMode], parameters: Iterable[ConstantParameter]
+    modes: Iterable[LocatedMode], parameters: Iterable[ConstantParameter]
 ) -> list[int]:
     """Return the number of corners of each constant parameter: two, or more around a curve."""
     ends = [dict(mode.spot.corner) for mode in modes]
@@ -100,7 +100,7 @@ def corner_counts(
 
 
 def constant_sets(
-    modes: Sequence[AbstractLocatedMode], parameters: Sequence[ConstantParameter]
+    modes: Sequence[LocatedMode], parameters: Sequence[ConstantParameter]
 ) -> Iterator[tuple[str, ...]]:
     """Yield, for each mode, its copies at the corners of the constant parameters.
 
@@ -129,7 +129,7 @@ def constant_sets(
 def with_constants(
     system: SwitchedSystem,
     parameters: Sequence[ConstantParameter],
-    modes: Sequence[AbstractLocatedMode],
+    modes: Sequence[LocatedMode],
 ) -> SwitchedSystem:
     """Return the system, with a mode for each corner, with parameters that do not change.
 

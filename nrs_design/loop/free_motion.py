@@ -9,9 +9,9 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.located import (
-    AbstractLocatedMode,
     ConstantParameter,
-    MatrixMode,
+    LocatedMode,
+    Period,
     Spot,
     spot_of,
 )
@@ -141,7 +141,7 @@ def _not_losable(which: str) -> AssemblyError:
 
 def free_modes(
     controller: Controller, state: SharedState, constants: Sequence[ConstantParameter] = ()
-) -> Iterator[MatrixMode]:
+) -> Iterator[LocatedMode]:
     """Yield the modes of a controller that touches nothing, at every corner of the motor."""
 
     def rows_at(values: Mapping[str, Fraction]) -> Rows:
@@ -151,11 +151,11 @@ def free_modes(
     everywhere = [constant for constant in constants if constant.contact is None]
     for labels, rows in state.motor_box.corners(rows_at, f"{controller.name}/{FREE}"):
         spot = head + spot_of(labels, state.motor_box.ranges, everywhere)
-        yield MatrixMode(controller.name, spot, FREE, RationalMatrix.from_rows(rows))
+        yield LocatedMode(controller.name, spot, FREE, Period(rows))
 
 
 def flights_of(
-    items: Sequence[AbstractLocatedMode],
+    items: Sequence[LocatedMode],
     environments: Iterable[Environment],
     pulls: tuple[RationalMatrix, ...],
 ) -> Flights:

@@ -12,10 +12,16 @@ from fractions import Fraction
 from itertools import chain
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.loop.located import ConstantParameter, MatrixMode, Spot, labelled_ends, spot_of
+from nrs_design.loop.located import (
+    ConstantParameter,
+    LocatedMode,
+    Period,
+    Spot,
+    labelled_ends,
+    spot_of,
+)
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import FixedParameter, Stay, Switching
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.misses import MissesSpec, automaton_of
@@ -43,7 +49,7 @@ def constant_parameters(parameters: Mapping[str, Interval]) -> tuple[ConstantPar
     )
 
 
-def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator[MatrixMode]:
+def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator[LocatedMode]:
     """Yield the corners of one mode; parameters that it does not depend on make none.
 
     An `InternalError` if the matrix halfway is not the mean of the corners.
@@ -58,12 +64,12 @@ def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator
     head, constants = Spot.named(mode.name), constant_parameters(parameters)
     for labels, A in corners:
         spot = head + spot_of(labels, own, constants)
-        yield MatrixMode(mode.name, spot, "", RationalMatrix.from_rows(A))
+        yield LocatedMode(mode.name, spot, "", Period(A))
 
 
 def modes_with_misses(
-    items: Sequence[MatrixMode], rule: MissesSpec
-) -> tuple[tuple[MatrixMode, ...], Switching]:
+    items: Sequence[LocatedMode], rule: MissesSpec
+) -> tuple[tuple[LocatedMode, ...], Switching]:
     """Return the modes by the automaton state after them, and the allowed switches.
 
     What may follow depends on the state of the automaton alone, so a mode is named by the state
@@ -72,7 +78,7 @@ def modes_with_misses(
     """
     automaton = automaton_of(*rule.window)
     # Modes by miss and by the state after them, in the order of states.
-    reached: dict[tuple[bool, int], tuple[MatrixMode, ...]] = {}
+    reached: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
     for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
         corners = [item for item in items if (item.group == rule.mode) is missed]
         for target in sorted({t for t in targets if t is not None}):

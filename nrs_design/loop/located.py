@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
 
 from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
@@ -89,19 +89,25 @@ def spot_of(
     return Spot(tuple(labels), tuple(corner))
 
 
+@dataclass(frozen=True, slots=True)
+class Period:
+    """Map of one period, or rates in 1/s: linear forms over states, inputs and roundings."""
+
+    moves: Sequence[LinearForm]  # The states after it
+    sizes: Sequence[LinearForm] = ()  # Bound on each rounding
+    command: LinearForm = ()  # Before it is cut off
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class AbstractLocatedMode(ABC):
+class LocatedMode:
     """A mode and its corner of the ranges."""
 
     group: str  # The name that rules of switching know: a controller, or what is done instead
     spot: Spot
-    # Name of the environment, or of free motion; empty if the mode is the same in all contacts
+    # Environment of the force (sample), or free motion; empty if it is the same in all contacts
     touches: str
-
-    @property
-    @abstractmethod
-    def A(self) -> RationalMatrix:
-        """Its map, or its rates in 1/s."""
+    period: Period
+    begins: bool = False  # Whether a round begins with this mode
 
     @property
     def name(self) -> str:
@@ -111,27 +117,22 @@ class AbstractLocatedMode(ABC):
     @property
     def mode(self) -> Mode:
         """The mode, as a proof is about it."""
-        return Mode(self.name, self.A)
+        moves = self.period.moves
+        rows = [row[: len(moves)] for row in moves]
+        return Mode(self.name, RationalMatrix.from_rows(rows))
 
     @property
     def varying(self) -> tuple[str, ...]:
         """Parts of its name without the ends of constant parameters."""
         return tuple(label.text for label in self.spot.labels if not label.constant)
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MatrixMode(AbstractLocatedMode):
-    """A mode that is a matrix alone."""
-
-    matrix: RationalMatrix
-
-    @property
-    def A(self) -> RationalMatrix:
-        """The matrix."""
-        return self.matrix
+    def column(self, i: int) -> RationalMatrix:
+        """Return the column of the i-th input, or rounding after the inputs."""
+        moves = self.period.moves
+        return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
 
 
-def grouped(items: Iterable[AbstractLocatedMode]) -> dict[str, list[str]]:
+def grouped(items: Iterable[LocatedMode]) -> dict[str, list[str]]:
     """Return the names of modes by their groups."""
     groups: dict[str, list[str]] = {}
     for item in items:
@@ -139,7 +140,7 @@ def grouped(items: Iterable[AbstractLocatedMode]) -> dict[str, list[str]]:
     return groups
 
 
-def enclosures_of(items: Iterable[AbstractLocatedMode]) -> Iterator[tuple[str, ...]]:
+def enclosures_of(items: Iterable[LocatedMode]) -> Iterator[tuple[str, ...]]:
     """Yield the modes that enclose one map or motion together."""
     found: dict[tuple[str, ...], list[str]] = {}
     for item in items:

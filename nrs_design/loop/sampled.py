@@ -14,6 +14,7 @@ from functools import cached_property
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Calendar, Turn
+from nrs_design.loop.located import Period
 from nrs_design.loop.program import (
     BEFORE,
     CUT_OFF,
@@ -36,15 +37,6 @@ Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]
 NOTHING: Contact = (ZERO, ZERO)
-
-
-@dataclass(frozen=True, slots=True)
-class Period:
-    """Map of one period: linear forms over states, inputs and roundings."""
-
-    moves: tuple[LinearForm, ...]  # The states after it
-    sizes: tuple[LinearForm, ...]  # Bound on each rounding
-    command: LinearForm  # Before it is cut off
 
 
 @dataclass(frozen=True, slots=True, eq=False)

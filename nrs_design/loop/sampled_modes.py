@@ -11,41 +11,21 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.flow import AGAIN, HeldDrive
 from nrs_design.loop.located import (
-    AbstractLocatedMode,
     ConstantParameter,
+    LocatedMode,
     Spot,
     labelled_ends,
     spot_of,
 )
-from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
+from nrs_design.loop.sampled import Contact, Rows, SampledLoop
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ZERO
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import MISS
 
 NOWHERE = Spot()
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SampledMode(AbstractLocatedMode):
-    """A mode of a sampled loop; its contact is that of the force sample."""
-
-    begins: bool  # Whether a round begins with this mode
-    period: Period
-
-    @property
-    def A(self) -> RationalMatrix:
-        """Its map."""
-        n = len(self.period.moves)
-        return RationalMatrix.from_rows([row[:n] for row in self.period.moves])
-
-    def column(self, i: int) -> RationalMatrix:
-        """Return the column of the i-th input, or rounding after the inputs."""
-        moves = self.period.moves
-        return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
 
 
 # Where drive and load are, if modes stand at corners; force samples there; and flows.
@@ -70,7 +50,7 @@ class Modes:
         """Whether the contact force acts on the motor."""
         return self.held.drive.loaded
 
-    def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
+    def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
         """Yield the modes of a controller in all its contacts; in free motion if it has none.
 
         A controller that takes no force touches what others do, where the sample outlasts it.
@@ -84,11 +64,11 @@ class Modes:
         for e in contacts:
             yield from self._of(c.name, (c.name, e.name), law, e, contacts)
 
-    def in_the_air(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
+    def in_the_air(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
         """Yield the modes of a controller that has contacts and touches nothing."""
         yield from self._of(c.name, (c.name, FREE), law, touches=FREE)
 
-    def between(self, law: DiscreteLaw, *where: str) -> Iterator[SampledMode]:
+    def between(self, law: DiscreteLaw, *where: str) -> Iterator[LocatedMode]:
         """Yield the modes at samples of the motion loop alone, which no force sample reaches."""
         turn, group = Turn.MOTION, f"/{Turn.MOTION}"
         contacts = self.environments if self._loaded else ()
@@ -97,7 +77,7 @@ class Modes:
         if not contacts:
             yield from self._of(group, (str(turn), *where), law, turns=(turn,))
 
-    def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[SampledMode]:
+    def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[LocatedMode]:
         """Yield the modes of a period whose deadline is missed, in all contacts or in none."""
         turns = self.loop.calendar.turns[-1:]
         for e in contacts:
@@ -114,7 +94,7 @@ class Modes:
         contacts: Sequence[Environment] = (),
         turns: Sequence[Turn] = (),
         touches: str = "",
-    ) -> Iterator[SampledMode]:
+    ) -> Iterator[LocatedMode]:
         """Yield the modes of a law while something is touched, or of turns that have none."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot.named(*names)
@@ -125,12 +105,12 @@ class Modes:
                 for where, contact in seen:
                     sample = self.loop.sample(law, age, contact, turn)
                     for at, rows in flows:
-                        yield SampledMode(
+                        yield LocatedMode(
                             group,
                             head + spot + said + where + at,
                             touches if e is None else e.name,
-                            turn is Turn.BOTH,
                             self.loop.period(sample, rows),
+                            begins=turn is Turn.BOTH,
                         )
 
     def _samples(

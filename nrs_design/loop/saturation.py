@@ -13,9 +13,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above
+from nrs_design.loop.located import LocatedMode
 from nrs_design.loop.program import BEFORE, CUT_OFF, INPUTS
 from nrs_design.loop.sampled import SampledLoop
-from nrs_design.loop.sampled_modes import SampledMode
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact.environment import Environment
@@ -89,7 +89,7 @@ def with_sampled_saturation(
     system: SwitchedSystem,
     conditions: OperatingConditions,
     loop: SampledLoop,
-    modes: Sequence[SampledMode],
+    modes: Sequence[LocatedMode],
     environments: Sequence[Environment],
 ) -> SwitchedSystem:
     """Let a statement be about motions in which the command of the motor saturates, sampled.
@@ -132,7 +132,7 @@ def with_sampled_saturation(
 def _clamped(
     conditions: OperatingConditions,
     loop: SampledLoop,
-    modes: Sequence[SampledMode],
+    modes: Sequence[LocatedMode],
     *,
     rounded: bool,
 ) -> Iterator[CutOff]:
@@ -154,7 +154,7 @@ def _clamped(
 
 
 def _held(
-    loop: SampledLoop, modes: Sequence[SampledMode], states: Sequence[RationalMatrix]
+    loop: SampledLoop, modes: Sequence[LocatedMode], states: Sequence[RationalMatrix]
 ) -> Iterator[RationalMatrix]:
     """Yield states at rest in which the error of a sample ago is that of now, in any mode.
 

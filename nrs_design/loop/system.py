@@ -31,7 +31,7 @@ from nrs_design.loop.free_motion import (
     lost_on_surface,
     outputs_of,
 )
-from nrs_design.loop.located import ConstantParameter, enclosures_of, grouped
+from nrs_design.loop.located import ConstantParameter, LocatedMode, enclosures_of, grouped
 from nrs_design.loop.program import (
     FORCE_ERROR,
     INPUTS,
@@ -41,7 +41,7 @@ from nrs_design.loop.program import (
 )
 from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.loop.sampled_assumptions import assume_sampled_loop
-from nrs_design.loop.sampled_modes import Modes, SampledMode
+from nrs_design.loop.sampled_modes import Modes
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import LinearForm, coordinates
@@ -69,7 +69,7 @@ def close_sampled_loop(
     constants: Sequence[ConstantParameter] = (),
     *,
     points: bool = False,
-) -> tuple[SwitchedSystem, Sequence[SampledMode]]:
+) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Return the system of a sampled loop, and its modes.
 
     `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
@@ -190,13 +190,13 @@ def _program(
 
 def _modes(
     every: Modes, design: ControllerDesign, laws: dict[str, DiscreteLaw], loss: Loss
-) -> tuple[tuple[SampledMode, ...], tuple[SampledMode, ...]]:
+) -> tuple[tuple[LocatedMode, ...], tuple[LocatedMode, ...]]:
     """Return the modes, and those of free motion beside them.
 
     Where contact is lost anywhere, a controller moves freely as it does in one more contact.
     """
-    modes: list[SampledMode] = []
-    beside: list[SampledMode] = []
+    modes: list[LocatedMode] = []
+    beside: list[LocatedMode] = []
     where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
     for c in design.controllers:
         modes += every.of_controller(c, laws[c.name])
@@ -213,7 +213,7 @@ def _modes(
     return tuple(modes), tuple(beside)
 
 
-def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None:
+def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:
     """Return which modes may be in force: some begin a round, or are those in time."""
     begins = tuple(item.name for item in items if item.begins)
     if sampling.misses is not None:
@@ -222,7 +222,7 @@ def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None
 
 
 def _channels(
-    conditions: OperatingConditions, off: Fraction, items: Sequence[SampledMode]
+    conditions: OperatingConditions, off: Fraction, items: Sequence[LocatedMode]
 ) -> Iterator[Channel]:
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
 
@@ -243,7 +243,7 @@ def _channels(
 
 
 def _roundings(
-    loop: SampledLoop, channels: Sequence[Channel], items: Sequence[SampledMode]
+    loop: SampledLoop, channels: Sequence[Channel], items: Sequence[LocatedMode]
 ) -> Iterator[Rounding]:
     """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
     n, named = len(loop.states), {channel.name for channel in channels}

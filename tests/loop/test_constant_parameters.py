@@ -7,10 +7,9 @@ import pytest
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop import constant_parameters
 from nrs_design.loop.constant_parameters import constant_sets
-from nrs_design.loop.located import ConstantParameter, MatrixMode, Spot, spot_of
+from nrs_design.loop.located import ConstantParameter, LocatedMode, Period, Spot, spot_of
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
@@ -46,7 +45,7 @@ def sets_of(names, *parameters):
         head, where, *labels = name.split("/")
         own = [p for p in parameters if p.contact in (None, where)]
         spot = Spot.named(head, where) + spot_of(labels, (), own)
-        items.append(MatrixMode(head, spot, where, RationalMatrix.from_rows([[1]])))
+        items.append(LocatedMode(head, spot, where, Period([[1]])))
     return [*constant_sets(items, parameters)]
 
 

@@ -31,17 +31,15 @@ from nrs_design.loop.given_matrices import (
     modes_with_misses,
     read_parameters,
 )
-from nrs_design.loop.located import ConstantParameter, LocatedMode, grouped
+from nrs_design.loop.located import LocatedMode, grouped
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.build_plant import OperatingConditions
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -137,7 +135,9 @@ def assemble(
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     modes: Sequence[LocatedMode]
     if sampling is None:
-        system, modes = _assemble_continuous(conditions, plant, design, constants)
+        from nrs_design.loop.close_loop import close_loop
+
+        system, modes = close_loop(conditions, plant, design, constants)
     else:
         from nrs_design.loop.system import close_sampled_loop
 
@@ -170,41 +170,6 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
     outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)
     states = tuple(map(axis.named, system.states))
     return replace(system, states=states, channels=channels, outputs=outputs)
-
-
-def _assemble_continuous(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-    constants: Sequence[ConstantParameter],
-) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
-    from nrs_design.loop.close_loop import check_memory, close_loop, with_command
-
-    state, limited = state_of(conditions, plant, design), conditions.initial_force is not None
-    system, modes = close_loop(
-        conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
-    )
-    if conditions.disturbances is not None:
-        check_memory(state.environments)
-        system = with_command(system, state, conditions.disturbances, conditions.torque)
-    if limited:
-        from nrs_design.loop.saturation import with_saturation
-
-        system = with_saturation(system, conditions, plant.actuator, state)
-    return system, modes
-
-
-def state_of(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-) -> SharedState:
-    """Return the state that the modes of an interaction design share in continuous time."""
-    from nrs_design.loop.shared_state import shared_state
-
-    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    idle, offset = conditions.idle, conditions.offset
-    return shared_state(plant, loop, design, idle=idle, offset=offset)
 
 
 def _check_scale(scale: Fraction) -> None:

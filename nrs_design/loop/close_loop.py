@@ -15,17 +15,16 @@ from fractions import Fraction
 from functools import partial
 from itertools import permutations, product
 
-from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
-    adds_free_motion,
+    could_pull,
     flights_of,
-    free_modes,
-    lost_contact,
+    force_rows,
+    lost_on_surface,
     outputs_of,
-    pulls_of,
 )
 from nrs_design.loop.located import (
     ConstantParameter,
@@ -36,49 +35,54 @@ from nrs_design.loop.located import (
     grouped,
     spot_of,
 )
-from nrs_design.loop.shared_state import SharedState
+from nrs_design.loop.saturation import with_saturation
+from nrs_design.loop.shared_state import SharedState, shared_state
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
+from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import ZERO, coordinates
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import SwitchingSpec
-from nrs_design.spec.build_plant import Bounds
+from nrs_design.spec.build_plant import Bounds, OperatingConditions
+from nrs_design.spec.interaction_parts import FREE
+
+# Nothing is touched: an environment without force.
+AIR = Environment(FREE, KelvinVoigt, (Interval.point(ZERO), Interval.point(ZERO)))
 
 
 def close_loop(
-    name: str,
-    state: SharedState,
-    rules: SwitchingSpec | None = None,
-    contact: str | None = None,
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
-    *,
-    limited: bool = False,
 ) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
-    """Assemble every mode of an interaction design.
+    """Return the system of a loop in continuous time, and its modes.
 
-    Without rules any controller may follow any other at any time. Contact, losable or kept, may by
-    default be lost where that is modelled, and a statement says whether it covers it. `limited`:
-    some statement is about signals that saturate. An `AssemblyError` if contact may be lost, and
-    that is not modelled.
+    Contact may by default be lost where that is modelled, and a statement says whether it covers
+    it. An `AssemblyError` if the spec asks for it, and it is not modelled.
     """
-    rules, controllers = rules or SwitchingSpec(), state.design.controllers
+    state, limited = shared_state(conditions, plant, design), conditions.initial_force is not None
+    rules, controllers = conditions.switching, design.controllers
     sprung = any(controller.law.spring for controller in controllers)
-    free = sprung and adds_free_motion(state, contact, rules)
-    losable = None if sprung or contact == "kept" else lost_contact(state, contact)
+    free = sprung and _adds_free_motion(state, conditions.contact, rules)
+    losable = None if sprung else _lost_contact(state, conditions.contact)
     items: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
     for c in controllers:
-        own = [*_in_contact(c, state, constants, by_contact=rules.names_contacts)]
-        own += free_modes(c, state, constants) if free else ()
+        own = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
+        own += _modes(c, state, [AIR], constants) if free else ()
         groups[c.name] = dict.fromkeys(item.group for item in own)
         items += own
-    pulls = tuple(pulls_of(state)) if free else ()
+    flights = flights_of(items, state.environments, _pulls(state)) if free else None
     system = SwitchedSystem(
-        name=name,
+        name=conditions.name,
         time=Time.CONTINUOUS,
         states=state.names,
         modes=tuple(item.mode for item in items),
@@ -87,10 +91,71 @@ def close_loop(
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
         contact=losable,
-        flights=flights_of(items, state.environments, pulls) if free else None,
+        flights=flights,
         enclosures=tuple(enclosures_of(items)),
     )
-    return system, items
+    if conditions.disturbances is not None:
+        _check_memory(state.environments)
+        system = with_command(system, state, conditions.disturbances, conditions.torque)
+    return with_saturation(system, conditions, plant.actuator, state) if limited else system, items
+
+
+def _lost_contact(state: SharedState, contact: str | None) -> Contact | None:
+    """Return the model of contact loss, or None where contact is kept or loss is not modelled."""
+    if contact == "kept" or not _can_be_free(state):
+        if contact == "losable":
+            raise _not_losable("")
+        return None
+    free = (item.mode for c in state.design.controllers for item in _modes(c, state, [AIR]))
+    return lost_on_surface(free, _pulls(state), contact)
+
+
+def _adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
+    """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
+
+    That contact is lost at any deflection is more than happens, and is covered on demand only. An
+    `AssemblyError` if the spec asks for it, and it is not modelled or the rules exclude it.
+    """
+    if contact != "losable":
+        return False
+    if not all(controller.law.spring for controller in state.design.controllers):
+        raise _not_losable(", where some controllers have a spring Kt, for all that have one")
+    if not _can_be_free(state):
+        raise _not_losable("")
+    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
+        raise AssemblyError(
+            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
+            "is lost whatever the rules of switching say",
+            remedy="use `contact: kept`, or rules with transitions between controllers alone",
+            at=("switching",),
+        )
+    return True
+
+
+def _can_be_free(state: SharedState) -> bool:
+    environments = state.environments
+    return (
+        bool(environments)
+        and state.idle is None
+        and state.law.commands == "velocity"
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in environments)
+        and not any(e.parts and not e.each_losable for e in environments)
+    )
+
+
+def _not_losable(which: str) -> AssemblyError:
+    return AssemblyError(
+        "loss of contact is modelled for impedance controllers on elastic and damped environments"
+        f"{which}",
+        remedy="use `contact: kept`",
+        at=("contact",),
+    )
+
+
+def _pulls(state: SharedState) -> tuple[RationalMatrix, ...]:
+    """Return the tensile forces, at the corners of their ranges."""
+    velocity = state.motion.output(len(state.names))
+    return tuple(force_rows(velocity, state.names, could_pull(state.environments)))
 
 
 def _resets(
@@ -113,31 +178,37 @@ def _resets(
         yield from ((*pair, map_) for pair in product(groups[source], groups[target]))
 
 
-def _in_contact(
-    controller: Controller,
-    state: SharedState,
-    constants: Sequence[ConstantParameter],
-    *,
-    by_contact: bool,
-) -> Iterator[LocatedMode]:
-    """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
+def _touched(c: Controller, state: SharedState) -> Sequence[Environment | None]:
+    """Return the contacts of a controller; None for one that takes no force, whatever it touches.
+
+    Where the plant differs by contact, such a controller has modes in all of them, too.
+    """
     by_name = {environment.name: environment for environment in state.environments}
-    touched: list[Environment | None] = [by_name[name] for name in controller.contacts]
-    if not touched:
-        # A law without force feedback has the same mode in every contact, unless the plant differs.
-        touched = [None, *(state.environments if state.feels else ())]
+    feels = state.environments if state.feels else ()
+    return [by_name[name] for name in c.contacts] or [None, *feels]
+
+
+def _modes(
+    c: Controller,
+    state: SharedState,
+    touched: Iterable[Environment | None],
+    constants: Sequence[ConstantParameter] = (),
+    *,
+    by_contact: bool = False,
+) -> Iterator[LocatedMode]:
+    """Yield the modes of a controller in some contacts, at every corner of contact and motor."""
     for e in touched:
         where = () if e is None else (e.name,)
-        name = "/".join((controller.name, *where))
-        box, known = state.contact_box(e).beside(state.motor_box), (None, *where)
+        name, known = "/".join((c.name, *where)), (None, *where)
+        box = state.contact_box(e).beside(state.motor_box)
         # Dependent stiffness and damping do not attain every corner.
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
         own = [constant for constant in constants if constant.contact in known]
-        for labels, rows in box.corners(partial(state.rows, controller.law, e), name):
+        for labels, rows in box.corners(partial(state.rows, c.law, e), name):
             yield LocatedMode(
-                name if by_contact else controller.name,
-                Spot.named(controller.name, *where) + spot_of(labels, real, own),
-                "" if e is None else e.name,
+                name if by_contact else c.name,
+                Spot.named(c.name, *where) + spot_of(labels, real, own),
+                "".join(where),
                 Period(rows),
             )
 
@@ -178,7 +249,7 @@ def with_command(
     )
 
 
-def check_memory(environments: Sequence[Environment]) -> None:
+def _check_memory(environments: Sequence[Environment]) -> None:
     """Refuse tissue that creeps, for which no bound under a command is stated."""
     if any(environment.law.remembers for environment in environments):
         raise AssemblyError(

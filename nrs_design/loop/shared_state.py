@@ -36,12 +36,12 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import (
     JointMotionLoop,
     LoadedMotionLoop,
-    MotionLoop,
     Realization,
     realize,
 )
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.controllers import Offset
 
 # What impedance controllers in a mixture integrate their velocity to.
@@ -173,29 +173,23 @@ def _rate(environment: Environment) -> str:
 
 
 def shared_state(
-    plant: Plant,
-    loop: MotionLoop,
-    design: ControllerDesign,
-    *,
-    idle: IdleStatesSpec | None = None,
-    offset: Offset = "none",
+    conditions: OperatingConditions, plant: Plant, design: ControllerDesign
 ) -> SharedState:
     """Return the shared state of the modes of a design; an `AssemblyError` if they share none."""
-    laws = [controller.law for controller in design.controllers]
-    leading = design.leading_laws(mixed=idle is not None)
+    laws, idle = [controller.law for controller in design.controllers], conditions.idle
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     state = SharedState(
         design,
         plant.among(design.contacts),
         realize(loop),
         loop.given,
         Joint.of(plant, design.motion),
-        leading[0],
+        design.leading_laws(mixed=idle is not None)[0],
         idle,
-        offset,
+        conditions.offset,
         next((law.states for law in laws if law.bleeds), ()),
     )
-    fault = next(_faults(state), None)
-    if fault is not None:
+    if (fault := next(_faults(state), None)) is not None:
         raise fault
     return state
 

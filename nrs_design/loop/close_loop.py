@@ -18,7 +18,6 @@ from itertools import permutations, product
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
-from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
     could_pull,
     flights_of,
@@ -35,6 +34,7 @@ from nrs_design.loop.located import (
     grouped,
     spot_of,
 )
+from nrs_design.loop.loop_assumptions import assume_loop
 from nrs_design.loop.saturation import with_saturation
 from nrs_design.loop.shared_state import SharedState, shared_state
 from nrs_design.models.contact.environment import Environment

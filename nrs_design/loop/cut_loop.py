@@ -260,10 +260,7 @@ def _loop(
     touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
     flow = HeldDrive(known, timing).flow(touched)[0].rows
     calendar = Calendar(timing, (place.age, place.age))
-    loop = SampledLoop(
-        SampledProgram(step, (law,)), axis.takes, known.states, known.memory, calendar
-    )
-    return loop, flow
+    return SampledLoop(SampledProgram(step, (law,)), known, calendar), flow
 
 
 def axis_of(

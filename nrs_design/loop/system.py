@@ -32,6 +32,7 @@ from nrs_design.loop.free_motion import (
     outputs_of,
 )
 from nrs_design.loop.located import ConstantParameter, LocatedMode, enclosures_of, grouped
+from nrs_design.loop.loop_assumptions import assume_sampled_loop
 from nrs_design.loop.program import (
     FORCE_ERROR,
     INPUTS,
@@ -40,7 +41,6 @@ from nrs_design.loop.program import (
     SampledProgram,
 )
 from nrs_design.loop.sampled import NOTHING, SampledLoop
-from nrs_design.loop.sampled_assumptions import assume_sampled_loop
 from nrs_design.loop.sampled_modes import Modes
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
@@ -152,7 +152,7 @@ def _wired(
     timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
     calendar = Calendar(timing, turns=turns_of(sampling))
     program = _program(conditions.idle, sampling, design, laws)
-    loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
+    loop = SampledLoop(program, drive, calendar)
     if not loop.takes_force:
         return loop
     return replace(loop, calendar=replace(calendar, ages=sampling.delay))

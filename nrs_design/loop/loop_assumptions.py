@@ -1,4 +1,4 @@
-"""Assumptions about a sampled loop."""
+"""Assumptions about the loop of an interaction design, sampled or in continuous time."""
 
 from __future__ import annotations
 
@@ -8,21 +8,14 @@ from itertools import chain
 from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.controllers.laws import DiscreteLaw
-from nrs_design.loop.assumptions import (
-    UNCOUPLED,
-    assume,
-    assume_command_unit,
-    assume_contacts,
-    assume_kept_contact,
-    assume_parts,
-    assume_rules,
-    assume_tissue,
-)
+from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.laws import LAWS, CompliantLaw, DiscreteLaw
+from nrs_design.loop.assumptions import COMMAND_UNIT, assume, assume_rules
 from nrs_design.loop.calendar import CommandTiming
 from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
+from nrs_design.loop.shared_state import REFERENCE, SharedState
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
 from nrs_design.models.interval import moving
@@ -30,8 +23,124 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.units import THESIS_COMMAND
+
+UNCOUPLED = assume("uncoupled.axes")
+
+
+def assume_loop(
+    loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
+) -> Iterator[Assumption]:
+    """Yield the assumptions about an interaction design.
+
+    `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
+    motion is one of the modes; `limited`: some statement is about signals that saturate.
+    """
+    yield from _assume_motion(loop)
+    yield from _assume_inputs(loop, losable=losable)
+    yield UNCOUPLED
+    yield from _assume_touching(loop)
+    for e in loop.environments:
+        yield from e.law.assumptions(e.name, alone=len(loop.environments) == 1)
+    yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
+    # If contact may be lost, each statement says whether it covers the loss.
+    if free:
+        yield assume("contact-lost.anywhere")
+    elif not losable:
+        yield from _assume_kept_contact(loop.design, alone=loop.idle is None)
+    yield from _assume_switches(loop, rules)
+    yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
+    yield assume("numbers.gains")
+    yield from _assume_command_unit(loop.design.command, loop.design.axis)
+
+
+def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
+    """Yield the model of the motion loop and of its load."""
+    joint, axis = loop.joint, loop.design.axis
+    if joint is None:
+        yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
+        return
+    motor = "nominal-motor.joint" if joint.ranges.fixed else "motor.joint"
+    yield assume(motor, **joint.ranges.assumed(axis))
+    if joint.load_inertia is None:
+        yield assume("unloaded.continuous")
+    else:
+        inertia = f"{exact_text(joint.load_inertia)} {axis.unit('kg*m^2')}"
+        yield assume("load.inertia", inertia=inertia)
+
+
+def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
+    """Yield the inputs, and the equilibria for zero inputs."""
+    if loop.offset != "none":
+        yield assume("rest-position.moving")
+        yield assume("at-a-switch.offset", taken=loop.offset)
+        if loop.offset == "measured":
+            yield assume("at-a-switch.lead")
+            yield assume("at-a-switch.kick")
+        yield assume("inputs.constant")
+        return
+    yield assume("inputs.continuous", rest="contact" if losable else "always")
+    sprung = any(c.law.spring for c in loop.design.controllers)
+    yield assume("inputs.bounded", also=sprung and "bounded", air=losable and "open")
+    if sprung:
+        yield assume("spring.shared" if loop.idle is None else "spring.idle")
+
+
+def _assume_touching(loop: SharedState) -> Iterator[Assumption]:
+    yield from _assume_contacts(loop.design)
+    if loop.feels and not all(c.contacts for c in loop.design.controllers):
+        yield assume("contacts.in-position")
+    yield from _assume_parts(loop.environments)
+    which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
+    yield from _assume_tissue(loop.environments, loop.design.axis, which)
+    integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
+    if integrated and all(e.law.has_rest for e in loop.environments):
+        yield assume("at-a-switch.deflection")
+
+
+def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
+    """Yield the evolution of idle states of impedance controllers, and of an idle integral."""
+    named, laws = loop.design.axis.named, [c.law for c in loop.design.controllers]
+    decay = idle_decay(idle)
+    rate = decay and exact_decimal(decay)
+    driving = _names(law for law in laws if law.commands == "velocity")
+    others = _names(law for law in laws if law.commands == "position")
+    if driving:
+        how, states = "decay" if decay else "held", (*loop.law.states, REFERENCE)
+        named_states = tuple(map(named, states))
+        yield assume(f"idle.{how}", driving=driving, others=others, states=named_states, decay=rate)
+    if (law := next((law for law in laws if law.bleeds), None)) is not None:
+        yield assume(
+            "idle.integral" if decay else "idle.held-integral",
+            others=_names(law for law in laws if not law.bleeds),
+            states=tuple(map(named, law.states)),
+            law=law.name,
+            decay=rate,
+        )
+    if idle.reset and driving:
+        yield assume("at-a-switch.zeroed", driving=driving, others=others)
+    yield assume("rest-position.commanded")
+    yield assume("at-a-switch.kick")
+
+
+def _names(laws: Iterable[CompliantLaw]) -> tuple[str, ...]:
+    """Return the distinct names of some laws."""
+    return tuple(dict.fromkeys(law.name for law in laws))
+
+
+def _assume_switches(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumption]:
+    reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
+    states = "others" if reset else "all"
+    if rules.is_arbitrary:
+        yield assume("at-a-switch.any-signal", which=states)
+        return
+    yield assume("at-a-switch.continuous", which=states)
+    yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
+    if not rules.names_contacts and rules.dwell_time is None:
+        yield assume("any-signal.environment")
 
 
 def assume_sampled_loop(
@@ -81,13 +190,13 @@ def assume_sampled_loop(
             yield assume("spring.sample")
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
-    yield from assume_contacts(design)
-    yield from assume_tissue(environments, axis)
+    yield from _assume_contacts(design)
+    yield from _assume_tissue(environments, axis)
     for e in environments:
         yield from e.law.assumptions(e.name, alone=len(environments) == 1)
     # For contact loss at the surface, each statement says whether it covers it.
     if loss is Loss.BY_LAWS:
-        yield from assume_kept_contact(design, alone=program.idle is None)
+        yield from _assume_kept_contact(design, alone=program.idle is None)
     elif loss is not Loss.SURFACE:
         yield assume(loss.value)
     yield assume("at-a-switch.sampled", which="others" if reset else "all")
@@ -102,7 +211,7 @@ def assume_sampled_loop(
         quantized="encoder" if conditions.sensed else "sensors",
         saturation="left-out" if conditions.initial_force is None else "stated",
     )
-    yield from assume_parts(environments)
+    yield from _assume_parts(environments)
 
 
 def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumption:
@@ -203,7 +312,7 @@ def _assume_positions(
     if program.idle is None:
         return
     decay = exact_decimal(program.idle)
-    others = tuple(dict.fromkeys(law.name for law in laws if not law.bleeds))
+    others = _names(law for law in laws if not law.bleeds)
     if others and any(law.bleeds for law in laws):
         yield assume("idle.sampled-bleeding", others=others, decay=decay)
     if moving:
@@ -223,7 +332,7 @@ def _assume_arithmetic(
     program, axis = loop.program, conditions.axis
     yield assume("numbers.coefficients", coefficients=tuple(_coefficients(program, laws)))
     if not design.takes:
-        yield from assume_command_unit(design.command, axis)
+        yield from _assume_command_unit(design.command, axis)
     counts = tuple(f"{name} {count}" for name, count in program.counts.items())
     yield assume("arithmetic.rounding", counts=counts)
     if (angle := conditions.largest_angle) is None:
@@ -241,3 +350,52 @@ def _coefficients(program: SampledProgram, laws: Mapping[str, DiscreteLaw]) -> I
         for key, (symbol, number) in zip(law.numbers, law.coefficients.items(), strict=True):
             if key in known:
                 yield f"{symbol} of {name} = {exact_decimal(number)}"
+
+
+def _assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:
+    """Yield the environments that each controller may contact."""
+    for c in design.controllers:
+        if c.contacts:
+            yield assume("contacts.controller", controller=c.name, contacts=tuple(c.contacts))
+
+
+def _assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
+    """Yield the assumptions about environments in simultaneous contact."""
+    for e in environments:
+        if e.parts:
+            how = "contacts.one-side" if e.each_losable else "contacts.at-once"
+            yield assume(how, environment=e.name, parts=tuple(part.name for part in e.parts))
+
+
+def _assume_tissue(
+    environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
+) -> Iterator[Assumption]:
+    """Yield the parameter ranges of the environments."""
+    yield assume(
+        name,
+        ranges=tuple(
+            f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
+            for e in environments
+            for (symbol, interval), unit in zip(
+                e.parameters.items(), e.law.units(rotational=True), strict=True
+            )
+        ),
+    )
+
+
+def _assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
+    """Yield the assumption of each control law about contact.
+
+    `alone`: all controllers give the motion loop the same kind of command.
+    """
+    used = {controller.law.name for controller in design.controllers}
+    laws = [law for name, law in LAWS.items() if name in used]
+    # Among velocity commands alone there is no mode of free motion.
+    ids = ("never" if alone and a.commands == "velocity" else a.contact_kept for a in laws)
+    yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
+
+
+def _assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
+    """Yield the unit of the motor command, if it is not rpm."""
+    if command != THESIS_COMMAND:
+        yield assume(COMMAND_UNIT, unit=command, per=axis.unit("rad"))

@@ -142,7 +142,7 @@ def assemble(
         from nrs_design.loop.system import close_sampled_loop
 
         system, modes = close_sampled_loop(
-            conditions, sampling, plant, design, constants, points=bool(points)
+            conditions, plant, design, constants, points=bool(points)
         )
     system = with_constants(system, constants, modes)
     period = None if sampling is None else sampling.outer

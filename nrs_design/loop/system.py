@@ -44,7 +44,7 @@ from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.loop.sampled_modes import Modes
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
-from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.linear_form import ONE, ZERO, LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_down, rounded_up
@@ -63,7 +63,6 @@ from nrs_design.spec.sampling import SamplingSpec
 
 def close_sampled_loop(
     conditions: OperatingConditions,
-    sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
@@ -72,8 +71,10 @@ def close_sampled_loop(
 ) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Return the system of a sampled loop, and its modes.
 
-    `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
+    `points`: of drives at the ends of their ranges, instead of the enclosure of all drives.
     """
+    sampling = conditions.sampling
+    assert sampling is not None
     if (odd := sampling.find_odd_periods()) is not None:
         raise AssemblyError(odd, remedy="change both periods", at=("sampling", "outer_period"))
     laws = {
@@ -82,7 +83,7 @@ def close_sampled_loop(
     environments = plant.among(design.contacts)
     if points:
         # The rates of a memory depend on its stiffness, so ends of them are none of a loop.
-        environments = tuple(e.scaled(Fraction(0)) if e.law.remembers else e for e in environments)
+        environments = tuple(e.scaled(ZERO) if e.law.remembers else e for e in environments)
         # What saturates is looked at in what encloses all.
         conditions = replace(conditions, initial_force=None)
     drive = plant.held_at(environments)
@@ -148,10 +149,20 @@ def _wired(
     design: ControllerDesign,
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
-    """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
+    """Return program, drive and calendar of a loop; force samples are kept if a law takes them.
+
+    An `AssemblyError` if the controllers share no state.
+    """
+    idle, low_pass, motion = conditions.idle, design.sensor.filter, design.motion
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
+        raise AssemblyError(
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
+        )
+    filtered = None if low_pass is None else low_pass.discretize(sampling.outer)
+    step = StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered, takes=design.takes)
+    program = SampledProgram(step, laws, None if idle is None else idle_share(idle, sampling.outer))
     timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
     calendar = Calendar(timing, turns=turns_of(sampling))
-    program = _program(conditions.idle, sampling, design, laws)
     loop = SampledLoop(program, drive, calendar)
     if not loop.takes_force:
         return loop
@@ -165,27 +176,6 @@ def _resets(
     if idle is not None and idle.reset:
         map_ = zeroing(loop.states, ("reference [rad]", "vm [rad/s]"))
         yield from ((*pair, map_) for pair in leaving_impedance(design.controllers))
-
-
-def _program(
-    idle: IdleStatesSpec | None,
-    sampling: SamplingSpec,
-    design: ControllerDesign,
-    laws: tuple[DiscreteLaw, ...],
-) -> SampledProgram:
-    """Return the program of all controllers; an `AssemblyError` if they share no state."""
-    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
-        raise AssemblyError(
-            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
-        )
-    low_pass, motion, outer = design.sensor.filter, design.motion, sampling.outer
-    filtered = None if low_pass is None else low_pass.discretize(outer)
-    damping = motion.over(sampling.period.exact)
-    return SampledProgram(
-        StepFrame(motion.Kp, damping, filtered, takes=design.takes),
-        laws,
-        None if idle is None else idle_share(idle, outer),
-    )
 
 
 def _modes(
@@ -224,10 +214,7 @@ def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None
 def _channels(
     conditions: OperatingConditions, off: Fraction, items: Sequence[LocatedMode]
 ) -> Iterator[Channel]:
-    """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
-
-    `off`, in N m, is how far the force signal may be off for long.
-    """
+    """Yield disturbances, and errors of the sensor: `off`, in N m, is the lasting one of force."""
     if conditions.disturbances is None:
         return
     bounds = dict(conditions.disturbances)
@@ -261,15 +248,13 @@ def _motor_command(
     loop: SampledLoop,
     channels: Sequence[Channel],
 ) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
-    """Return the command under disturbances, roundings included, and what it leaves out.
+    """Return the command under disturbances, roundings included, and its assumption.
 
-    While it stays below the limit of the driver, the driver does nothing but what the model says:
-    so a bound from rest, below the limit, excludes saturation under the same disturbances.
-
-    Impedance controllers change the reference after the command, so it is one and the same form of
-    the states in all modes, in contact and free. A rounding is at most a share of other forms, so
-    the command is a mixture of rows in which every share is added or subtracted. Nothing without
-    disturbances or a limit, or where it is not of this form.
+    A bound from rest, below the limit of the driver, excludes saturation under the same
+    disturbances. Impedance controllers change the reference after the command, so it is the same
+    form of the states in all modes. A rounding is at most a share of other forms, so the command is
+    a mixture of rows in which every share is added or subtracted. Nothing without disturbances or a
+    limit, or for other controllers.
     """
     moving = all(law.law.commands == "velocity" for law in loop.program.laws)
     if largest is None or not channels or not moving or loop.calendar.holds:
@@ -280,9 +265,8 @@ def _motor_command(
     bounds = {channel.name: channel.bound for channel in channels}
     shares = list(zip(form[end:], sample.sizes, strict=True))
     # What the disturbances of a sample add to its command at once, at most.
-    at_once = _largest(form[n:end], bounds) + sum(
-        (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
-    )
+    inputs = [(ONE, form[n:end]), *((abs(c), size[n:end]) for c, size in shares)]
+    at_once = sum((c * _largest(row, bounds) for c, row in inputs), ZERO)
     rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
     rows = tuple(
         RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
@@ -304,5 +288,5 @@ def _motor_command(
 
 def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
     """Return the largest value of a form of the inputs; inputs without a bound are zero."""
-    sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
-    return sum(sizes, Fraction(0))
+    sizes = (abs(c) * bounds.get(name, ZERO) for name, c in zip(INPUTS, form, strict=True))
+    return sum(sizes, ZERO)

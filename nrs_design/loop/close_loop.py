@@ -238,8 +238,7 @@ def with_command(
             at=("controllers", sprung, "Kt"),
         )
     ((name, (bound, unit)),) = disturbances.items()
-    free = () if system.contact is None else system.contact.free
-    columns = tuple(_column(mode, state.motion) for mode in (*system.modes, *free))
+    columns = tuple(_column(mode, state.motion) for mode in system.every_mode)
     velocity = state.motion.output(system.order)
     return replace(
         system,

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop.located import ConstantParameter, LocatedMode
 from nrs_design.models.drive import GAIN
-from nrs_design.models.interval import Interval
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.proof.system import SwitchedSystem
 
@@ -40,21 +39,40 @@ def constants_of(
 ) -> Iterator[ConstantParameter]:
     """Yield the constant parameters of a plant; `part` is the part of the spec that its drive is.
 
-    What a drive does in a period encloses its numbers, but for the gain of a motor, and those of
-    the load that acts on it: their corners are none of their values.
+    The flow of a period encloses the numbers of its drive, but for the gain of a motor, and those
+    of a load: their corners are none of their values.
     """
-    drive, tissue = plant.held, tuple(_of_tissue(plant, touched))
-    if sampled and tissue and drive.loaded and len(touched) > 1:
-        raise InternalError("the ends of constants of several contacts are not told apart")
+    drive = plant.held
+    contacts = [e for e in plant.environments if not e.parts and e.name in touched]
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:
             key, unit = _DRIVEN[symbol]
-            unit = unit.format(command=plant.actuator_ranges.command)
-            found = _between_ends(
-                f"{part}.{key}", interval, symbol, unit, inverse=symbol in drive.inverse
+            said = FixedParameter(
+                f"{part}.{key}",
+                interval.low,
+                interval.high,
+                unit.format(command=plant.actuator_ranges.command),
+                symbol in drive.inverse,
+                enclosed=sampled and symbol != GAIN,
             )
-            yield _enclosed(found) if sampled and symbol != GAIN else found
-    yield from map(_enclosed, tissue) if sampled and drive.loaded else tissue
+            yield ConstantParameter(said, _ends(symbol))
+    for e in contacts:
+        keys = zip(e.law.keys, e.law.parameters(), e.law.units(rotational=True), strict=True)
+        for (key, symbol, unit), interval in zip(keys, e.ranges, strict=True):
+            if not interval.is_constant:
+                continue
+            enclosed = sampled and drive.loaded
+            if enclosed and len(touched) > 1:
+                raise InternalError("the ends of constants of several contacts are not told apart")
+            said = FixedParameter(
+                f"environments.{e.name}.{key}",
+                interval.low,
+                interval.high,
+                unit,
+                symbol in e.law.inverse,
+                enclosed,
+            )
+            yield ConstantParameter(said, _ends(symbol), e.name)
 
 
 # Symbols of the parameters of a drive, with their keys in a spec and their units.
@@ -66,29 +84,8 @@ _DRIVEN = {
 }
 
 
-def _enclosed(found: ConstantParameter) -> ConstantParameter:
-    """Return a parameter whose corners enclose what the modes are."""
-    return replace(found, said=replace(found.said, enclosed=True))
-
-
-def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParameter]:
-    for environment in plant.environments:
-        if environment.parts or environment.name not in touched:
-            continue
-        law = environment.law
-        keys = zip(law.keys, law.parameters(), law.units(rotational=True), strict=True)
-        for (key, symbol, unit), interval in zip(keys, environment.ranges, strict=True):
-            if interval.is_constant:
-                name, inverse = f"environments.{environment.name}.{key}", symbol in law.inverse
-                found = _between_ends(name, interval, symbol, unit, inverse=inverse)
-                yield replace(found, contact=environment.name)
-
-
-def _between_ends(
-    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool
-) -> ConstantParameter:
-    said = FixedParameter(name, interval.low, interval.high, unit, inverse)
-    return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
+def _ends(symbol: str) -> tuple[str, str]:
+    return f"{symbol}-min", f"{symbol}-max"
 
 
 def corner_counts(

@@ -88,15 +88,14 @@ class Entries:
     def moved(self, at: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
         """Return bounds on the change of the entries under a load that varies within the time.
 
-        `widths` are those of the ranges of numbers of the load. Let A be the generator at the
-        moment, with entries of at most M by size, and k a number of the load, which acts by N:
-        ``A(s) = A + (k(s) - k) N`` with k the mean over the time. What the state becomes is off by
-        the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (h - s)) N E(s)``, E what the changing
-        A makes of the state until s. The first factor has the mean zero and a range of some width,
-        so that is at most ``h^2/8`` times the width and the largest derivative of g (Ostrowski
-        1970), which is at most ``exp(M h) (|N| M + M |N|) exp(M h)``. What commands add is off by
-        at most the integral of ``exp(M (h - s)) |N| exp(M s)``, which is the corner block of the
-        exponential of ``[[M, |N|], [0, M]] h``.
+        `widths` are those of the ranges of the load. Let ``A(s) = A + (k(s) - k) N`` be the
+        generator, with entries of at most M by size, k the mean of a number of the load, and E(s)
+        the transition until s. The state is off by the integral of ``(k(s) - k) g(s)`` with ``g =
+        exp(A (h - s)) N E(s)``. The first factor has the mean zero and a range of some width, so
+        that is at most ``h^2/8`` times the width and the largest derivative of g (Ostrowski 1970),
+        which is at most ``exp(M h) (|N| M + M |N|) exp(M h)``. The part of commands is off by at
+        most the integral of ``exp(M (h - s)) |N| exp(M s)``: the corner block of the exponential of
+        ``[[M, |N|], [0, M]] h``.
         """
         from flint import arb_mat
 

@@ -61,9 +61,9 @@ def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator
     mean = combine(*((Fraction(1, len(corners)), [*chain(*A)]) for _, A in corners))
     if [*chain(*middle)] != mean:
         raise InternalError(f"mode {mode.name} is not affine in the parameters")
-    head, constants = Spot.named(mode.name), constant_parameters(parameters)
+    constants = constant_parameters(parameters)
     for labels, A in corners:
-        spot = head + spot_of(labels, own, constants)
+        spot = Spot.named(mode.name) + spot_of(labels, own, constants)
         yield LocatedMode(mode.name, spot, "", Period(A))
 
 

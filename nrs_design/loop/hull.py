@@ -43,10 +43,9 @@ class EntryCurve:
 
 
 def around(point: Mapping[Key, Fraction], errors: Mapping[Key, Fraction]) -> list[Point]:
-    """Return the points of a simplex that holds the box of what numbers may be off.
+    """Return the points of a simplex that holds a box of errors.
 
-    With n numbers that may be off: all of them at their low ends, and each of them alone n times
-    as far as its high end.
+    Of n uncertain numbers: all at their low ends, and each alone n times as far as its high end.
     """
     low = {key: value - errors[key] for key, value in point.items()}
     wide = [key for key, error in errors.items() if error]
@@ -69,9 +68,8 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
     """Return points around curves that are run through together; None if too flat or too many.
 
     `curves_of` returns them for an order. The Bezier points of polynomials of degree m, with m
-    curves, are a simplex that holds these polynomials. It is widened by what the curves are off,
-    and by digits. Numbers that are known but for their digits have a point of their own each, far
-    beyond.
+    curves, are a simplex that holds these polynomials. It is widened by the errors of the curves
+    and of digits. Each number without a curve has a point of its own, far beyond.
     """
     bent = [key for key, curve in curves_of(0).items() if not bool(curve.far == 0)]
     if len(bent) > MOST_BENT:
@@ -103,9 +101,7 @@ def _widened(
     still: Mapping[Key, Fraction],
     errors: Mapping[Key, Fraction],
 ) -> tuple[Fraction, list[Point]] | None:
-    """Return by which share a simplex that holds all near another is wider, and its points.
-
-    None where the other one is flat.
+    """Return the points of a wider simplex, and by which share it is wider; None for a flat one.
 
     A point off by e has weights of at least -w at its corners, by the inverse of their matrix. In
     the simplex whose corners are ``(1 + sum w) p_i - sum w_j p_j`` they are not negative. A far
@@ -220,12 +216,12 @@ def _power(size: Fraction, bits: int) -> Fraction:
 
 
 def rational(x: Fraction) -> fmpq:
-    """Return a fraction as a rational number of flint."""
+    """Return a rational number of flint."""
     from flint import fmpq
 
     return fmpq(x.numerator, x.denominator)
 
 
 def fraction(x: fmpq) -> Fraction:
-    """Return a rational number of flint as a fraction."""
+    """Return a fraction of Python."""
     return Fraction(int(x.p), int(x.q))

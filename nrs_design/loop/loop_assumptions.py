@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
 
 from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -17,7 +16,7 @@ from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.shared_state import REFERENCE, SharedState
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.drive import Drive, Takes
+from nrs_design.models.drive import Takes
 from nrs_design.models.interval import moving
 from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
@@ -39,10 +38,19 @@ def assume_loop(
     `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
     motion is one of the modes; `limited`: some statement is about signals that saturate.
     """
+    design = loop.design
     yield from _assume_motion(loop)
     yield from _assume_inputs(loop, losable=losable)
     yield UNCOUPLED
-    yield from _assume_touching(loop)
+    yield from _assume_contacts(design)
+    if loop.feels and not all(c.contacts for c in design.controllers):
+        yield assume("contacts.in-position")
+    yield from _assume_parts(loop.environments)
+    which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
+    yield from _assume_tissue(loop.environments, design.axis, which)
+    integrated = any(c.law.commands == "velocity" for c in design.controllers)
+    if integrated and all(e.law.has_rest for e in loop.environments):
+        yield assume("at-a-switch.deflection")
     for e in loop.environments:
         yield from e.law.assumptions(e.name, alone=len(loop.environments) == 1)
     yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
@@ -50,11 +58,11 @@ def assume_loop(
     if free:
         yield assume("contact-lost.anywhere")
     elif not losable:
-        yield from _assume_kept_contact(loop.design, alone=loop.idle is None)
+        yield from _assume_kept_contact(design, alone=loop.idle is None)
     yield from _assume_switches(loop, rules)
     yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
     yield assume("numbers.gains")
-    yield from _assume_command_unit(loop.design.command, loop.design.axis)
+    yield from _assume_command_unit(design.command, design.axis)
 
 
 def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
@@ -89,18 +97,6 @@ def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
         yield assume("spring.shared" if loop.idle is None else "spring.idle")
 
 
-def _assume_touching(loop: SharedState) -> Iterator[Assumption]:
-    yield from _assume_contacts(loop.design)
-    if loop.feels and not all(c.contacts for c in loop.design.controllers):
-        yield assume("contacts.in-position")
-    yield from _assume_parts(loop.environments)
-    which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield from _assume_tissue(loop.environments, loop.design.axis, which)
-    integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
-    if integrated and all(e.law.has_rest for e in loop.environments):
-        yield assume("at-a-switch.deflection")
-
-
 def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Yield the evolution of idle states of impedance controllers, and of an idle integral."""
     named, laws = loop.design.axis.named, [c.law for c in loop.design.controllers]
@@ -109,9 +105,10 @@ def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption
     driving = _names(law for law in laws if law.commands == "velocity")
     others = _names(law for law in laws if law.commands == "position")
     if driving:
-        how, states = "decay" if decay else "held", (*loop.law.states, REFERENCE)
-        named_states = tuple(map(named, states))
-        yield assume(f"idle.{how}", driving=driving, others=others, states=named_states, decay=rate)
+        how, states = "decay" if decay else "held", map(named, (*loop.law.states, REFERENCE))
+        yield assume(
+            f"idle.{how}", driving=driving, others=others, states=tuple(states), decay=rate
+        )
     if (law := next((law for law in laws if law.bleeds), None)) is not None:
         yield assume(
             "idle.integral" if decay else "idle.held-integral",
@@ -162,15 +159,20 @@ def assume_sampled_loop(
     if sampling.round > 1:
         yield assume("period.order")
     if (misses := sampling.misses) is not None:
-        most, of = misses.window
-        yield assume(f"deadlines.{misses.command}", at_most=most, of=of)
-    yield from _assume_commands(timing, constant=conditions.constant_delay_key is not None)
+        at_most, of = misses.window
+        yield assume(f"deadlines.{misses.command}", at_most=at_most, of=of)
+    yield from _assume_timing(timing, constant=conditions.constant_delay_key is not None)
     if plant.drive is not None and plant.drive.speed is not None:
         # The velocity jumps when a command takes effect.
         yield assume("command-age.before")
-    yield _assume_samples(*sampling.delay)
-    yield _assume_motor(plant, loop, axis, environments)
-    yield from _assume_load(plant, axis, environments)
+    least, most = sampling.delay
+    oldest = f"{most} sample{'s' * (most != 1)}"
+    if least < most:
+        yield assume("sample-age.range", least=least, most=oldest)
+    else:
+        yield assume("sample-age.fixed" if most else "sample-age.now", most=oldest)
+    constant = any(number.is_constant for e in environments for number in e.ranges)
+    yield from _assume_motor(plant, loop, axis, "constant" if constant else "")
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
@@ -183,11 +185,9 @@ def assume_sampled_loop(
         rest="contact" if loss is Loss.SURFACE else "always",
     )
     if any(c.law.spring for c in design.controllers):
-        if program.step.takes is Takes.VELOCITY:
-            yield assume("spring.measured")
-        else:
-            yield assume("spring.shared" if program.idle is None else "spring.idle")
-            yield assume("spring.sample")
+        shared = "spring.shared" if program.idle is None else "spring.idle"
+        velocity = program.step.takes is Takes.VELOCITY
+        yield from map(assume, ["spring.measured"] if velocity else [shared, "spring.sample"])
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
     yield from _assume_contacts(design)
@@ -204,7 +204,7 @@ def assume_sampled_loop(
         yield from assume_rules(conditions.switching, "controller")
     else:
         yield assume("any-signal.in-time")
-    yield from _assume_arithmetic(conditions, loop, laws, design)
+    yield from _assume_arithmetic(conditions, program, laws, design)
     yield assume(
         "not-quantized.sampled",
         beyond=beyond,
@@ -226,7 +226,7 @@ def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumpti
     return assume("period.double" if steady else "period.double-jitter", **values)
 
 
-def _assume_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
+def _assume_timing(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
     """Yield the delay of commands, if there is one."""
     earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
     if timing.latest and timing.earliest == timing.latest:
@@ -236,62 +236,41 @@ def _assume_commands(timing: CommandTiming, *, constant: bool) -> Iterator[Assum
         yield assume(f"command-age.{how}", earliest=earliest, late=late)
 
 
-def _assume_samples(least: int, most: int) -> Assumption:
-    """Return the age of force samples."""
-    oldest = f"{most} sample{'s' * (most != 1)}"
-    if least < most:
-        return assume("sample-age.range", least=least, most=oldest)
-    return assume("sample-age.fixed" if most else "sample-age.now", most=oldest)
-
-
 def _assume_motor(
-    plant: Plant, loop: SampledLoop, axis: AxisType, environments: Sequence[Environment]
-) -> Assumption:
-    """Return the model of the motor, or of the robot."""
-    ranges, timing = plant.actuator_ranges, loop.calendar.timing
-    motor = ranges.assumed(axis)
+    plant: Plant, loop: SampledLoop, axis: AxisType, but: str
+) -> Iterator[Assumption]:
+    """Yield the model of the motor, or of the robot, and its load; `but` says what is constant."""
+    ranges, inertia = plant.actuator_ranges, plant.load_inertia
+    drive = plant.drive
+    numbers = (ranges.gain, ranges.time_constant) if drive is None else drive.ranges.values()
     # Parameters change at samples only.
-    motor["moving"] = motor["moving"] and f"{motor['moving']}-sampled"
-    if plant.slowed:
-        return assume("motor.loaded", **motor)
-    if plant.drive is not None:
-        return _assume_drive(plant.drive, axis, environments)
-    known = ranges.time_constant.low == ranges.time_constant.high
-    motor["corner"] = "times" if timing.varies else "point" if known else "motor"
-    if loop.program.step.streams:
-        del motor["gain"]
-        return assume("motor.followed", **motor)
-    return assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
-
-
-def _assume_drive(drive: Drive, axis: AxisType, environments: Sequence[Environment]) -> Assumption:
-    """Return the model of a robot with an interface in place of a motor."""
-    moves = moving(drive.ranges.values())
-    moves = moves and f"{moves}-sampled"
-    if drive.takes is Takes.TORQUE:
+    moves = f"{how}-sampled" if (how := moving(numbers)) else ""
+    motor = ranges.assumed(axis) | {"moving": moves}
+    if drive is not None and drive.takes is Takes.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
         B = f"{drive.ranges['B'].text} {axis.unit('N*m*s/rad')}"
-        return assume("motor.torque", J=J, B=B, moving=moves, but=_constant(environments))
-    if "tau" in drive.ranges:
+        yield assume("motor.torque", J=J, B=B, moving=moves, but=but)
+    elif drive is not None and "tau" in drive.ranges:
         tau = f"{drive.ranges['tau'].text} s"
-        return assume("motor.followed-position", tau=tau, moving=moves)
-    return assume("motor.followed-function", what=drive.takes)
-
-
-def _assume_load(
-    plant: Plant, axis: AxisType, environments: Sequence[Environment]
-) -> Iterator[Assumption]:
-    """Yield the load of the motor, unless the model of the drive has it."""
+        yield assume("motor.followed-position", tau=tau, moving=moves)
+    elif drive is not None:
+        yield assume("motor.followed-function", what=drive.takes)
+    elif plant.slowed:
+        yield assume("motor.loaded", **motor)
+    else:
+        known = ranges.time_constant.low == ranges.time_constant.high
+        varies = loop.calendar.timing.varies
+        motor["corner"] = "times" if varies else "point" if known else "motor"
+        if loop.program.step.streams:
+            del motor["gain"]
+            yield assume("motor.followed", **motor)
+        else:
+            yield assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
     if not plant.held.loaded:
         yield assume("unloaded.sampled")
-    elif plant.drive is None and plant.load_inertia is not None:
-        inertia = f"{exact_text(plant.load_inertia)} {axis.unit('kg*m^2')}"
-        yield assume("load.sampled", inertia=inertia, but=_constant(environments))
-
-
-def _constant(environments: Iterable[Environment]) -> str:
-    touched = chain.from_iterable(environment.ranges for environment in environments)
-    return "constant" if any(number.is_constant for number in touched) else ""
+    elif drive is None and inertia is not None:
+        weight = f"{exact_text(inertia)} {axis.unit('kg*m^2')}"
+        yield assume("load.sampled", inertia=weight, but=but)
 
 
 def _assume_positions(
@@ -324,32 +303,30 @@ def _assume_positions(
 
 def _assume_arithmetic(
     conditions: OperatingConditions,
-    loop: SampledLoop,
+    program: SampledProgram,
     laws: Mapping[str, DiscreteLaw],
     design: ControllerDesign,
 ) -> Iterator[Assumption]:
     """Yield the coefficients of the program, and its roundings."""
-    program, axis = loop.program, conditions.axis
-    yield assume("numbers.coefficients", coefficients=tuple(_coefficients(program, laws)))
+    step, known = program.step, program.listed.law.coefficient
+    gains = {} if step.takes else {"Kp": step.Kp, "Kd/T": step.D}
+    gains |= {
+        f"{symbol} of {name}": number
+        for name, law in laws.items()
+        for key, (symbol, number) in zip(law.numbers, law.coefficients.items(), strict=True)
+        if key in known
+    }
+    texts = tuple(f"{name} = {exact_decimal(number)}" for name, number in gains.items())
+    yield assume("numbers.coefficients", coefficients=texts)
     if not design.takes:
-        yield from _assume_command_unit(design.command, axis)
+        yield from _assume_command_unit(design.command, conditions.axis)
     counts = tuple(f"{name} {count}" for name, count in program.counts.items())
     yield assume("arithmetic.rounding", counts=counts)
     if (angle := conditions.largest_angle) is None:
         yield assume("arithmetic.angles-left-out")
     else:
-        yield assume("arithmetic.angles", largest=rounded_down(angle, axis.unit("rad")))
-
-
-def _coefficients(program: SampledProgram, laws: Mapping[str, DiscreteLaw]) -> Iterator[str]:
-    if not program.step.takes:
-        yield f"Kp = {exact_decimal(program.step.Kp)}"
-        yield f"Kd/T = {exact_decimal(program.step.D)}"
-    known = program.listed.law.coefficient
-    for name, law in laws.items():
-        for key, (symbol, number) in zip(law.numbers, law.coefficients.items(), strict=True):
-            if key in known:
-                yield f"{symbol} of {name} = {exact_decimal(number)}"
+        largest = rounded_down(angle, conditions.axis.unit("rad"))
+        yield assume("arithmetic.angles", largest=largest)
 
 
 def _assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -21,7 +20,6 @@ from nrs_design.loop.sampled_law import (
     KP,
     STEP,
     ListedLaw,
-    RoundedStep,
     kinds_of,
     list_law,
     second,
@@ -101,29 +99,11 @@ class SampledProgram:
         return tuple(text for name, text in self.stored.items() if name.startswith("filtered_"))
 
     def wire(self, w: Wires, law: DiscreteLaw, turn: Turn) -> dict[str, LinearForm]:
-        """Set what a sample makes of ``measured`` and ``felt``.
+        """Set the results of a sample from ``measured`` and ``felt``.
 
-        Its results are ``command``, and the next states, such as ``reference+``. Return how large
-        each rounding is at most.
+        They are ``command``, and the next states, such as ``reference+``. Return a bound on each
+        rounding.
         """
-        step = self._step(w, law)
-        sizes: dict[str, LinearForm] = {}
-        moving = law.law.commands == "velocity"
-        for name, result in self.listed.following.items():
-            if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
-                continue
-            moved = ONE if moving and name in self.places else ZERO
-            made = w.sum((ONE, step.result(result, w.nothing)), (moved, w[ROUNDED_REFERENCE]))
-            w.set({f"{name}+": made})
-        if turn is not Turn.ADMITTANCE:
-            streamed = ONE if self.step.takes is Takes.POSITION else ZERO
-            made = w.sum((ONE, step.command(w.nothing)), (streamed, w[ROUNDED_REFERENCE]))
-            w.set({"command": made})
-            sizes |= {} if self.step.streams else step.motion_sizes()
-        return sizes if turn is Turn.MOTION else sizes | step.other_sizes()
-
-    def _step(self, w: Wires, law: DiscreteLaw) -> RoundedStep:
-        rounded = {name: w[name] for name in self.roundings}
         given = {
             **{name: w[name] for name in self.stored},
             "angle": w["measured"],
@@ -133,8 +113,19 @@ class SampledProgram:
         if law.law.commands == "position":
             # A position is rounded when read, the reference of an admittance when it moves.
             given["position"] = w[ROUNDED_REFERENCE]
-        numbers: Mapping[str, Fraction] = self.step.numbers | numbers_in_force(
-            law, step_parts(self.laws), self.idle
-        )
-        terms = self.listed.terms(law, numbers, given, rounded)
-        return RoundedStep(self.listed, law, numbers, rounded, self.roundings, terms)
+        parts = step_parts(self.laws)
+        numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
+        rounded = {name: w[name] for name in self.roundings}
+        step = self.listed.step(law, numbers, given, rounded, self.roundings)
+        sizes: dict[str, LinearForm] = {}
+        moving = law.law.commands == "velocity"
+        for name, result in self.listed.following.items():
+            if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
+                continue
+            moved = ONE if moving and name in self.places else ZERO
+            w.set({f"{name}+": w.sum((ONE, step.result(result)), (moved, w[ROUNDED_REFERENCE]))})
+        if turn is not Turn.ADMITTANCE:
+            streamed = ONE if self.step.takes is Takes.POSITION else ZERO
+            w.set({"command": w.sum((ONE, step.command()), (streamed, w[ROUNDED_REFERENCE]))})
+            sizes |= {} if self.step.streams else step.motion_sizes()
+        return sizes if turn is Turn.MOTION else sizes | step.other_sizes()

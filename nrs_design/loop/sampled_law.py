@@ -77,37 +77,29 @@ class ListedLaw:
                 most[name] = max(count, most.get(name, 0))
         return most
 
-    def terms(
+    def step(
         self,
         law: DiscreteLaw,
         numbers: Mapping[str, Fraction],
         given: Mapping[str, LinearForm],
         rounded: Mapping[str, LinearForm],
-    ) -> dict[str, tuple[Term, ...]]:
-        """Return the terms of each result.
-
-        Inputs and states that are missing are zero; `rounded` is by what terms are off, by name.
-        """
+        shares: Mapping[str, Fraction],
+    ) -> RoundedStep:
+        """Return a sample of a law in force; inputs and states that are missing are zero."""
         mode = law.law.name
         nothing = zero(len(next(iter(given.values()))))
         every = {value.name: given.get(value.name, nothing) for value in self.law.values}
-        errors = {
-            name: combine((ONE, nothing), *((ONE, form) for form in self.off(law, name, rounded)))
-            for name in own_results(self.law)
+        off = {
+            result: _sum(nothing, (rounded[name] for name in terms))
+            for result, terms in self.counts[mode].items()
         }
+        errors = {name: off[name] for name in own_results(self.law)}
         found = rounded_terms(self.law, self.law.modes.index(mode), every, numbers, errors)
-        names = self.names[mode]
-        return {
-            result: tuple(replace(t, name=names[result].get(t.name, t.name)) for t in terms)
-            for result, terms in found.items()
-            if result in names
+        terms = {
+            result: tuple(replace(t, name=names.get(t.name, t.name)) for t in found[result])
+            for result, names in self.names[mode].items()
         }
-
-    def off(
-        self, law: DiscreteLaw, result: str, rounded: Mapping[str, LinearForm]
-    ) -> list[LinearForm]:
-        """Return the rounding errors of the terms of a result, from those of all terms."""
-        return [rounded[name] for name in self.counts[law.law.name][result]]
+        return RoundedStep(self.law, numbers, rounded, shares, terms, off)
 
 
 @lru_cache(maxsize=32)
@@ -153,6 +145,10 @@ def own_results(law: StepLaw) -> Iterator[str]:
     yield from (operation.name for operation in law.operations if operation.rounding == "own")
 
 
+def _sum(first: LinearForm, forms: Iterable[LinearForm]) -> LinearForm:
+    return combine((ONE, first), *((ONE, form) for form in forms))
+
+
 # Binary digits of how large roundings are.
 SIZE_BITS = 8
 
@@ -173,26 +169,23 @@ def second(name: str) -> str:
 class RoundedStep:
     """One sample of a law in force."""
 
-    listed: ListedLaw  # The list of operations
-    law: DiscreteLaw  # In force
+    law: StepLaw  # The list of operations
     numbers: Mapping[str, Fraction]  # Its coefficients by name
     # Rounding error of each term: the last coordinates of all forms.
     rounded: Mapping[str, LinearForm]
     shares: Mapping[str, Fraction]  # Bounds on these errors, relative to the terms
     terms: Mapping[str, tuple[Term, ...]]  # Terms of each result
+    off: Mapping[str, LinearForm]  # Rounding error of each result
 
-    def result(self, name: str, nothing: LinearForm) -> LinearForm:
-        """Return a result with what it is rounded by."""
-        forms = [term.form for term in self.terms[name]]
-        off = self.listed.off(self.law, name, self.rounded)
-        return combine((ONE, nothing), *((ONE, form) for form in (*forms, *off)))
+    def result(self, name: str) -> LinearForm:
+        """Return a result with its rounding error."""
+        return _sum(self.off[name], (term.form for term in self.terms[name]))
 
-    def command(self, nothing: LinearForm) -> LinearForm:
-        """Return the command with what it is rounded by, that of second order apart."""
+    def command(self) -> LinearForm:
+        """Return the command with its rounding errors, those of second order apart."""
         again = (second(term.name) for term in self.terms.get("error", ()))
         off = (self.rounded[name] for name in again if name in self.rounded)
-        made = self.result(self.listed.law.outputs["command"], nothing)
-        return combine((ONE, made), *((ONE, form) for form in off))
+        return _sum(self.result(self.law.outputs["command"]), off)
 
     def motion_sizes(self) -> dict[str, LinearForm]:
         """Return what bounds the roundings of error and command, by their terms."""
@@ -222,7 +215,7 @@ class RoundedStep:
         """Return what bounds the roundings of all other results."""
         sizes: dict[str, LinearForm] = {}
         factors = {STEP: "T", KEPT: "a"}
-        own = {*own_results(self.listed.law)}
+        own = {*own_results(self.law)}
         for result in self.terms.keys() - {"error", self._command}:
             beyond = 1 + self.shares[STEP] if result in own else ONE
             for term in self.terms[result]:
@@ -240,7 +233,7 @@ class RoundedStep:
     @property
     def _command(self) -> str:
         """Name of the result that the command is, of a motion controller."""
-        command = self.listed.law.outputs["command"]
+        command = self.law.outputs["command"]
         return command if "error" in self.terms else "command"
 
     def _exact(self, form: LinearForm) -> LinearForm:

@@ -97,11 +97,6 @@ class SampledLoop:
         """The states that show a force later: samples on their way, and the lags of its filter."""
         return (*self.calendar.samples, *self.program.lags)
 
-    @property
-    def remembers(self) -> bool:
-        """Whether a force sample outlasts its period."""
-        return bool(self.shown_later)
-
     def sample(
         self, law: DiscreteLaw, age: int, touched: Contact, turn: Turn = Turn.BOTH
     ) -> Sample:

@@ -10,6 +10,7 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.flow import AGAIN, HeldDrive
+from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.located import (
     ConstantParameter,
     LocatedMode,
@@ -50,7 +51,34 @@ class Modes:
         """Whether the contact force acts on the motor."""
         return self.held.drive.loaded
 
-    def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
+    def of_controllers(
+        self, controllers: Sequence[Controller], laws: Mapping[str, DiscreteLaw], loss: Loss
+    ) -> tuple[list[LocatedMode], list[LocatedMode]]:
+        """Return the modes, and those of free motion beside them.
+
+        Where contact is lost anywhere, a controller moves freely as it does in one more contact.
+        """
+        modes: list[LocatedMode] = []
+        beside: list[LocatedMode] = []
+        where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
+        for c in controllers:
+            law = laws[c.name]
+            modes += self._of_controller(c, law)
+            if c.contacts and where is not None:
+                where += self._of(c.name, (c.name, FREE), law, touches=FREE)
+        law, turns = next(iter(laws.values())), self.loop.calendar.turns
+        if turns[-1].is_miss:
+            modes += self._without_law(turns[-1], law, self.environments, FREE)
+            if where is not None:
+                where += self._without_law(turns[-1], law, (), FREE)
+        if Turn.MOTION in turns:
+            # No force sample reaches them.
+            contacts = self.environments if self._loaded else ()
+            modes += self._without_law(Turn.MOTION, law, contacts)
+            beside += self._without_law(Turn.MOTION, law, contacts, FREE) if beside else ()
+        return modes, beside
+
+    def _of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
         """Yield the modes of a controller in all its contacts; in free motion if it has none.
 
         A controller that takes no force touches what others do, where the sample outlasts it.
@@ -58,32 +86,21 @@ class Modes:
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
             # It is the same there as in contact, unless a sample or the motor feels the force.
-            touches = FREE if self.loop.remembers or self._loaded else ""
+            touches = FREE if self.loop.shown_later or self._loaded else ""
             yield from self._of(c.name, (c.name,), law, touches=touches)
             contacts = self.environments if touches else ()
         for e in contacts:
             yield from self._of(c.name, (c.name, e.name), law, e, contacts)
 
-    def in_the_air(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
-        """Yield the modes of a controller that has contacts and touches nothing."""
-        yield from self._of(c.name, (c.name, FREE), law, touches=FREE)
-
-    def between(self, law: DiscreteLaw, *where: str) -> Iterator[LocatedMode]:
-        """Yield the modes at samples of the motion loop alone, which no force sample reaches."""
-        turn, group = Turn.MOTION, f"/{Turn.MOTION}"
-        contacts = self.environments if self._loaded else ()
+    def _without_law(
+        self, turn: Turn, law: DiscreteLaw, contacts: Sequence[Environment], *where: str
+    ) -> Iterator[LocatedMode]:
+        """Yield the modes of a sample at which no law is computed, in some contacts or in none."""
+        name, touches = (MISS, FREE) if turn.is_miss else (str(turn), "")
         for e in contacts:
-            yield from self._of(group, (str(turn), e.name), law, e, contacts, (turn,))
+            yield from self._of(f"/{name}", (name, e.name), law, e, contacts, (turn,))
         if not contacts:
-            yield from self._of(group, (str(turn), *where), law, turns=(turn,))
-
-    def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[LocatedMode]:
-        """Yield the modes of a period whose deadline is missed, in all contacts or in none."""
-        turns = self.loop.calendar.turns[-1:]
-        for e in contacts:
-            yield from self._of(f"/{MISS}", (MISS, e.name), law, e, contacts, turns)
-        if not contacts:
-            yield from self._of(f"/{MISS}", (MISS, FREE), law, turns=turns, touches=FREE)
+            yield from self._of(f"/{name}", (name, *where), law, turns=(turn,), touches=touches)
 
     def _of(
         self,
@@ -133,7 +150,8 @@ class Modes:
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
     ) -> Iterator[Touched]:
         """Yield samples and flows in a contact, for every drive."""
-        constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
+        loaded, forced = self._loaded, self.loop.takes_force
+        constants = [c for c in self.constants if c.contact in (None, e and e.name)]
         real = () if loaded or (e is not None and e.depends) else LOAD
         for labels, held in self.drives or (((), self.held),):
             for load, own in self._loads(e, contacts):
@@ -168,11 +186,6 @@ class Modes:
         else:
             for labels, values in labelled_ends(own):
                 yield labels, {symbol: Interval.point(value) for symbol, value in values.items()}
-
-    def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
-        """Return the constant parameters of the drive and of the contact."""
-        known = (None, e and e.name)
-        return tuple(c for c in self.constants if c.contact in known)
 
 
 def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:

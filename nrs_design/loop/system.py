@@ -14,7 +14,7 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.calendar import Calendar, CommandTiming, Turn, turns_of
+from nrs_design.loop.calendar import Calendar, CommandTiming, turns_of
 from nrs_design.loop.constraints import (
     assemble_switching,
     clock_of,
@@ -55,7 +55,6 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.build_plant import OperatingConditions
-from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.sampling import SamplingSpec
@@ -99,7 +98,7 @@ def close_sampled_loop(
         loss.anywhere or not all(c.contacts for c in design.controllers),
         tuple(held.points()) if points else (),
     )
-    modes, free = _modes(every, design, laws, loss)
+    modes, free = every.of_controllers(design.controllers, laws, loss)
     items = (*modes, *free)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
     velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
@@ -176,31 +175,6 @@ def _resets(
     if idle is not None and idle.reset:
         map_ = zeroing(loop.states, ("reference [rad]", "vm [rad/s]"))
         yield from ((*pair, map_) for pair in leaving_impedance(design.controllers))
-
-
-def _modes(
-    every: Modes, design: ControllerDesign, laws: dict[str, DiscreteLaw], loss: Loss
-) -> tuple[tuple[LocatedMode, ...], tuple[LocatedMode, ...]]:
-    """Return the modes, and those of free motion beside them.
-
-    Where contact is lost anywhere, a controller moves freely as it does in one more contact.
-    """
-    modes: list[LocatedMode] = []
-    beside: list[LocatedMode] = []
-    where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
-    for c in design.controllers:
-        modes += every.of_controller(c, laws[c.name])
-        if c.contacts and where is not None:
-            where += every.in_the_air(c, laws[c.name])
-    law, turns = next(iter(laws.values())), every.loop.calendar.turns
-    if turns[-1].is_miss:
-        modes += every.missed(law, every.environments)
-        if where is not None:
-            where += every.missed(law, ())
-    if Turn.MOTION in turns:
-        modes += every.between(law)
-        beside += every.between(law, FREE) if beside else ()
-    return tuple(modes), tuple(beside)
 
 
 def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:

@@ -9,8 +9,6 @@ from hypothesis import strategies as st
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.assemble import assemble_from_text
-from nrs_design.models.contact import KelvinVoigt
-from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import LoadedSpec, parse_spec
@@ -109,16 +107,6 @@ def test_stiffness_stays_positive(gains):
     assemble_from_text(HAND, gains, Fraction("1.99"))
     with pytest.raises(AssemblyError, match="environment hand reaches a stiffness"):
         assemble_from_text(HAND, gains, Fraction(2))
-
-
-def test_damping_does_not_become_negative():
-    one = Fraction(1)
-    soft = Environment(
-        "soft", KelvinVoigt, (Interval(3 * one, 2 * one, 4 * one), Interval(one, one / 2, one))
-    )
-    assert soft.scaled(Fraction(2)).ranges[1].low == 0
-    with pytest.raises(AssemblyError, match="environment soft reaches a damping"):
-        soft.scaled(Fraction("2.01"))
 
 
 def test_negative_scales_are_refused():

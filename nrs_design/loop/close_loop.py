@@ -19,6 +19,7 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.loop.free_motion import (
+    Loss,
     could_pull,
     flights_of,
     force_rows,
@@ -45,7 +46,6 @@ from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
@@ -69,29 +69,34 @@ def close_loop(
     it. An `AssemblyError` if the spec asks for it, and it is not modelled.
     """
     state, limited = shared_state(conditions, plant, design), conditions.initial_force is not None
-    rules, controllers = conditions.switching, design.controllers
-    sprung = any(controller.law.spring for controller in controllers)
-    free = sprung and _adds_free_motion(state, conditions.contact, rules)
-    losable = None if sprung else _lost_contact(state, conditions.contact)
+    rules = conditions.switching
+    loss = _loss_of(state, conditions.contact, rules)
     items: list[LocatedMode] = []
+    free: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
-    for c in controllers:
+    for c in design.controllers:
         own = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
-        own += _modes(c, state, [AIR], constants) if free else ()
+        air = [*_modes(c, state, [AIR], constants)] if loss is not Loss.NEVER else []
+        own += air if loss.anywhere else ()
+        free += air
         groups[c.name] = dict.fromkeys(item.group for item in own)
         items += own
-    flights = flights_of(items, state.environments, _pulls(state)) if free else None
+    losable, velocity = loss is Loss.SURFACE, state.motion.output(len(state.names))
+    pulling = could_pull(state.environments) if free else ()
+    pulls = tuple(force_rows(velocity, state.names, pulling))
     system = SwitchedSystem(
         name=conditions.name,
         time=Time.CONTINUOUS,
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=tuple(
-            assume_loop(state, rules, losable=losable is not None, free=free, limited=limited)
+            assume_loop(state, rules, losable=losable, free=loss.anywhere, limited=limited)
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
-        contact=losable,
-        flights=flights,
+        contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
+        if losable
+        else None,
+        flights=flights_of(items, state.environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.disturbances is not None:
@@ -100,47 +105,38 @@ def close_loop(
     return with_saturation(system, conditions, plant.actuator, state) if limited else system, items
 
 
-def _lost_contact(state: SharedState, contact: str | None) -> Contact | None:
-    """Return the model of contact loss, or None where contact is kept or loss is not modelled."""
-    if contact == "kept" or not _can_be_free(state):
-        if contact == "losable":
-            raise _not_losable("")
-        return None
-    free = (item.mode for c in state.design.controllers for item in _modes(c, state, [AIR]))
-    return lost_on_surface(free, _pulls(state), contact)
+def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> Loss:
+    """Return how contact is lost, by the key `contact` of a spec.
 
-
-def _adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
-    """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
-
-    That contact is lost at any deflection is more than happens, and is covered on demand only. An
-    `AssemblyError` if the spec asks for it, and it is not modelled or the rules exclude it.
+    With springs, free motion ends at rest in one place, and is a mode on demand only: that contact
+    is lost at any deflection is more than happens. An `AssemblyError` if the spec asks for a loss
+    that is not modelled, or that the rules exclude.
     """
+    environments, sprung = (
+        state.environments,
+        {bool(c.law.spring) for c in state.design.controllers},
+    )
+    loss = Loss.of(contact, environments, state.design, slowed=False)
+    modelled = (
+        loss in (Loss.ANYWHERE, Loss.SURFACE)
+        and bool(environments)
+        and state.idle is None
+        and not any(e.law.has_mass for e in environments)
+    )
     if contact != "losable":
-        return False
-    if not all(controller.law.spring for controller in state.design.controllers):
+        return loss if modelled else Loss.NEVER
+    if len(sprung) > 1:
         raise _not_losable(", where some controllers have a spring Kt, for all that have one")
-    if not _can_be_free(state):
+    if not modelled:
         raise _not_losable("")
-    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
+    if loss.anywhere and (rules.names_contacts or next(rules.dwell_times(), None) is not None):
         raise AssemblyError(
             "where an admittance has a spring Kt, free motion is a mode like others, and contact "
             "is lost whatever the rules of switching say",
             remedy="use `contact: kept`, or rules with transitions between controllers alone",
             at=("switching",),
         )
-    return True
-
-
-def _can_be_free(state: SharedState) -> bool:
-    environments = state.environments
-    return (
-        bool(environments)
-        and state.idle is None
-        and state.law.commands == "velocity"
-        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in environments)
-        and not any(e.parts and not e.each_losable for e in environments)
-    )
+    return loss
 
 
 def _not_losable(which: str) -> AssemblyError:
@@ -150,12 +146,6 @@ def _not_losable(which: str) -> AssemblyError:
         remedy="use `contact: kept`",
         at=("contact",),
     )
-
-
-def _pulls(state: SharedState) -> tuple[RationalMatrix, ...]:
-    """Return the tensile forces, at the corners of their ranges."""
-    velocity = state.motion.output(len(state.names))
-    return tuple(force_rows(velocity, state.names, could_pull(state.environments)))
 
 
 def _resets(

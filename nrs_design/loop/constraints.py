@@ -49,7 +49,11 @@ def assemble_switching(
     if rules.transitions is not None:
         within = ((name, name) for name in groups)
         transitions = _limited(_expand(chain(within, rules.transitions), groups))
-    jumps = _limited(_assembled_resets(resets, groups))
+    jumps = _limited(
+        Reset(*pair, matrix)
+        for source, target, matrix in resets
+        for pair in _expand([(source, target)], groups)
+    )
     stays = tuple(_assembled_stays(rules, groups, Stay(common)))
     return Switching(common, transitions, jumps, stays=stays)
 
@@ -79,12 +83,6 @@ def _assembled_stays(
         )
         if stay != common:
             yield from ((mode, stay) for mode in modes)
-
-
-def _assembled_resets(resets: Iterable[Jump], groups: Groups) -> Iterator[Reset]:
-    for before, after, matrix in resets:
-        for source, target in _expand([(before, after)], groups):
-            yield Reset(source, target, matrix)
 
 
 def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]:
@@ -122,7 +120,8 @@ def count_stays(
     sample, in s. A state is how many samples a controller has been in force, up to its dwell time.
     An `AssemblyError` if there are too many of them.
     """
-    names, counts = [*modes], [_count_samples(rules, name, period) for name in modes]
+    names, shortest = [*modes], [rules.stay(name)[0] for name in modes]
+    counts = [1 if stay is None else max(ceil(stay.value / period), 1) for stay in shortest]
     if len(names) < 2 or max(counts) == 1:
         none = {"dwell_time": None, "longest_dwell_time": None}
         return None, rules.model_copy(update=none), ()
@@ -153,11 +152,3 @@ def count_stays(
     clock = Clock(len(ahead), own, ahead, tuple(more[:-1]))
     each = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
     return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=each),)
-
-
-def _count_samples(rules: SwitchingSpec, name: str, period: Fraction) -> int:
-    """Return how many samples a stay of a controller has at least."""
-    shortest, _ = rules.stay(name)
-    if shortest is None:
-        return 1
-    return max(ceil(shortest.value / period), 1)

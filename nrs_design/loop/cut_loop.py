@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
@@ -37,6 +37,7 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.calendar import Calendar, CommandTiming, Turn
 from nrs_design.loop.flow import HeldDrive
 from nrs_design.loop.hull import fraction, rational
+from nrs_design.loop.located import labelled_ends
 from nrs_design.loop.modes import WHOLE, ForceShare, Rows, position_mode, velocity_mode
 from nrs_design.loop.parameter_box import Joint
 from nrs_design.loop.program import SampledProgram
@@ -73,8 +74,7 @@ class Place:
     texts: tuple[str, ...] = ()  # Deviations from nominal; the age if there are several
 
 
-@dataclass(frozen=True, slots=True)
-class CutLoop:
+class CutLoop(NamedTuple):
     """Characteristic polynomials of one mode, highest power first, of one length."""
 
     opened: Polynomial  # Without force feedback to the law; the load of a motor remains
@@ -172,8 +172,8 @@ class ContinuousAxis(AbstractAxis):
     ) -> list[CutLoop]:
         """Return the loops of three admittances; without inertia is a limit of the same."""
         return [
-            _times(Mt, self.cut(Admittance(Mt, Bt, spring), contact, place))
-            for Mt, Bt in COORDINATES
+            CutLoop(*(tuple(law.Mt * c for c in p) for p in self.cut(law, contact, place)))
+            for law in (Admittance(Mt, Bt, spring) for Mt, Bt in COORDINATES)
         ]
 
 
@@ -288,18 +288,11 @@ def _places(
 ) -> Iterator[Place]:
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
-    # Parameters without a range have one corner.
-    numbers = (
-        ("Km", f"{unit('rad/s')}/{ranges.command}", ranges.gain),
-        ("tau", "s", ranges.time_constant),
-    )
-    for (_, gain), (_, tau) in product(*(r.ends for _, _, r in numbers)):
-        texts = tuple(
-            f"{name} = {float(value):.6g} {measured}"
-            for (name, measured, r), value in zip(numbers, (gain, tau), strict=True)
-            if r.low < r.high
-        )
-        motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
+    units = {GAIN: f"{unit('rad/s')}/{ranges.command}", "tau": "s"}
+    for labels, at in labelled_ends({GAIN: ranges.gain, "tau": ranges.time_constant}):
+        symbols = [label.partition("-")[0] for label in labels]
+        texts = tuple(f"{s} = {float(at[s]):.6g} {units[s]}" for s in symbols)
+        motors.setdefault(replace(nominal, gain=at[GAIN], time_constant=at["tau"]), texts)
     every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
     for (motor, texts), age, late in every:
         aged = () if ages[0] == ages[1] else (f"delay {age}",)
@@ -313,11 +306,6 @@ def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
 
     found = fmpq_mat([[rational(c) for c in row] for row in rows]).charpoly().coeffs()
     return tuple(map(fraction, reversed(found)))
-
-
-def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
-    each = loop.opened, loop.closed, loop.free
-    return CutLoop(*(tuple(factor * c for c in polynomial) for polynomial in each))
 
 
 def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:

@@ -19,11 +19,7 @@ from nrs_design.loop.assumptions import (
     assume_preloads,
     assume_scale,
 )
-from nrs_design.loop.constant_parameters import (
-    constant_lateness,
-    constants_of,
-    with_constants,
-)
+from nrs_design.loop.constant_parameters import constant_lateness, constants_of, with_constants
 from nrs_design.loop.constraints import assemble_switching
 from nrs_design.loop.given_matrices import (
     constant_parameters,

@@ -7,9 +7,7 @@ from enum import Enum
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.loop.located import (
-    LocatedMode,
-)
+from nrs_design.loop.located import LocatedMode
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.assumption import Assumption

@@ -11,13 +11,7 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.flow import AGAIN, HeldDrive
 from nrs_design.loop.free_motion import Loss
-from nrs_design.loop.located import (
-    ConstantParameter,
-    LocatedMode,
-    Spot,
-    labelled_ends,
-    spot_of,
-)
+from nrs_design.loop.located import ConstantParameter, LocatedMode, Spot, labelled_ends, spot_of
 from nrs_design.loop.sampled import Contact, Rows, SampledLoop
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD

@@ -24,12 +24,7 @@ from nrs_design.loop.modes import Rows, lead, position_mode, velocity_mode, with
 from nrs_design.loop.parameter_box import Box, Joint
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import ZERO
-from nrs_design.models.motion_loop import (
-    JointMotionLoop,
-    LoadedMotionLoop,
-    Realization,
-    realize,
-)
+from nrs_design.models.motion_loop import JointMotionLoop, LoadedMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.build_plant import OperatingConditions

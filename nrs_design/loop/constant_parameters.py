@@ -124,9 +124,7 @@ def constant_sets(
 
 
 def with_constants(
-    system: SwitchedSystem,
-    parameters: Sequence[ConstantParameter],
-    modes: Sequence[LocatedMode],
+    system: SwitchedSystem, parameters: Sequence[ConstantParameter], modes: Sequence[LocatedMode]
 ) -> SwitchedSystem:
     """Return the system, with a mode for each corner, with parameters that do not change.
 

@@ -34,9 +34,7 @@ T = TypeVar("T")
 
 
 def assemble_switching(
-    rules: SwitchingSpec,
-    groups: Groups,
-    resets: Iterable[Jump] = (),
+    rules: SwitchingSpec, groups: Groups, resets: Iterable[Jump] = ()
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes, which are grouped by its names.
 

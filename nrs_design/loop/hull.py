@@ -171,10 +171,7 @@ class Tie:
 
 
 def ties(
-    G: fmpq_mat,
-    h: Fraction,
-    entry: Callable[[fmpq_mat, Key], fmpq],
-    sizes: Mapping[Key, Fraction],
+    G: fmpq_mat, h: Fraction, entry: Callable[[fmpq_mat, Key], fmpq], sizes: Mapping[Key, Fraction]
 ) -> dict[Key, Tie]:
     """Return which entries of ``exp(G h)`` a few others give exactly, at known G and h.
 

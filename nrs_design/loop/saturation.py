@@ -37,10 +37,7 @@ ERROR_BEFORE = "error of motion a sample ago"
 
 
 def with_saturation(
-    system: SwitchedSystem,
-    conditions: OperatingConditions,
-    actuator: Actuator,
-    state: SharedState,
+    system: SwitchedSystem, conditions: OperatingConditions, actuator: Actuator, state: SharedState
 ) -> SwitchedSystem:
     """Let a statement be about motions in which velocity command and motor command saturate.
 

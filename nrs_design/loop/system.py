@@ -217,10 +217,7 @@ def _roundings(
 
 
 def _motor_command(
-    largest: Fraction | None,
-    unit: str,
-    loop: SampledLoop,
-    channels: Sequence[Channel],
+    largest: Fraction | None, unit: str, loop: SampledLoop, channels: Sequence[Channel]
 ) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
     """Return the command under disturbances, roundings included, and its assumption.
 

@@ -50,7 +50,7 @@ def test_the_filter_runs_with_the_outer_loop():
 def test_the_sampled_loop_takes_the_errors_for_its_force_error():
     _, system = sensed(
         "sampling: {period: 2 ms, delay: 0}\ndisturbances: {encoder_step: 1e-5 rad}\n"
-        "sensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n",
+        "sensor: {bias: 5e-3 N*m, filter: {cutoff: 60 Hz}}\n"
     )
     assert system.states[4] == "filtered 1 before [N*m]"
     bounds = {channel.name: channel.bound for channel in system.channels}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
     assume,
@@ -19,23 +19,31 @@ from nrs_design.loop.assumptions import (
     assume_preloads,
     assume_scale,
 )
-from nrs_design.loop.constant_parameters import constant_lateness, constants_of, with_constants
 from nrs_design.loop.constraints import assemble_switching
-from nrs_design.loop.given_matrices import (
-    constant_parameters,
-    corner_modes,
-    modes_with_misses,
-    read_parameters,
+from nrs_design.loop.located import (
+    ConstantParameter,
+    LocatedMode,
+    Period,
+    Spot,
+    constant_lateness,
+    constants_of,
+    grouped,
+    labelled_ends,
+    spot_of,
+    with_constants,
 )
-from nrs_design.loop.located import LocatedMode, grouped
+from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import combine
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import FixedParameter, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec import InteractionDesignSpec, ModeSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec.misses import MissesSpec
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -43,6 +51,9 @@ DECLARED = Fraction(1)
 # Points of the ranges of a sampled loop.
 ENDS, NOMINAL = "ends", "nominal"
 POINTS = (ENDS, NOMINAL)
+# Switches by a rule for misses.
+MAX_TRANSITIONS = 200_000
+ONCE = Stay(Fraction(1), Fraction(1))
 
 
 def assemble_from_text(
@@ -97,6 +108,83 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         switching=switching,
     )
     return with_constants(system, constant_parameters(parameters), items)
+
+
+def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> dict[str, Interval]:
+    """Return the parameters of a spec, their ranges scaled about the nominal values."""
+    return {
+        name: Interval(p.nominal, *p.range, p.varies).scaled(scale)
+        for name, p in spec.parameters.items()
+    }
+
+
+def constant_parameters(parameters: Mapping[str, Interval]) -> tuple[ConstantParameter, ...]:
+    """Return the parameters that are unknown but constant."""
+    return tuple(
+        ConstantParameter(
+            FixedParameter(name, interval.low, interval.high), (f"{name}-min", f"{name}-max")
+        )
+        for name, interval in parameters.items()
+        if interval.is_constant
+    )
+
+
+def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator[LocatedMode]:
+    """Yield the corners of one mode; parameters that it does not depend on make none.
+
+    An `InternalError` if the matrix halfway is not the mean of the corners.
+    """
+    own = {name: interval for name, interval in parameters.items() if name in mode.parameters}
+    others = {name: interval.nominal for name, interval in parameters.items()}
+    corners = [(labels, mode.matrix(others | at)) for labels, at in labelled_ends(own)]
+    middle = mode.matrix({name: interval.middle for name, interval in parameters.items()})
+    mean = combine(*((Fraction(1, len(corners)), [*chain(*A)]) for _, A in corners))
+    if [*chain(*middle)] != mean:
+        raise InternalError(f"mode {mode.name} is not affine in the parameters")
+    constants = constant_parameters(parameters)
+    for labels, A in corners:
+        spot = Spot.named(mode.name) + spot_of(labels, own, constants)
+        yield LocatedMode(mode.name, spot, "", Period(A))
+
+
+def modes_with_misses(
+    items: Sequence[LocatedMode], rule: MissesSpec
+) -> tuple[tuple[LocatedMode, ...], Switching]:
+    """Return the modes by the automaton state after them, and the allowed switches.
+
+    What may follow depends on the state of the automaton alone, so a mode is named by the state
+    that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step. All
+    groups but that of a miss are hits. An `AssemblyError` if there are too many switches.
+    """
+    from nrs_design.spec.misses import automaton_of
+
+    automaton = automaton_of(*rule.window)
+    # Modes by miss and by the state after them, in the order of states.
+    reached: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
+    for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
+        corners = [item for item in items if (item.group == rule.mode) is missed]
+        for target in sorted({t for t in targets if t is not None}):
+            reached[missed, target] = tuple(
+                replace(item, spot=item.spot + Spot.named(f"s{target}")) for item in corners
+            )
+    transitions: list[tuple[str, str]] = []
+    stays: list[tuple[str, Stay]] = []
+    for (_, state), sources in reached.items():
+        following = [(False, automaton.hit[state]), (True, automaton.miss[state])]
+        after = [mode for missed, t in following if t is not None for mode in reached[missed, t]]
+        names = {mode.name for mode in after}
+        if (len(transitions) + len(sources) * len(after)) > MAX_TRANSITIONS:
+            raise AssemblyError(
+                f"the rule for misses makes more than {MAX_TRANSITIONS} switches",
+                remedy="shorten its window, or declare fewer parameters",
+                at=("misses",),
+            )
+        for source in sources:
+            transitions += ((source.name, mode.name) for mode in after if mode is not source)
+            if source.name not in names:
+                stays.append((source.name, ONCE))
+    modes = tuple(mode for corners in reached.values() for mode in corners)
+    return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(stays))
 
 
 def assemble(

@@ -67,9 +67,9 @@ class Box:
                 if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
                     said = f"the matrix of mode {name} is not affine in each parameter"
                     raise InternalError(said)
-        ends = (rows for at, rows in known.items() if MIDDLE not in at)
-        for (labels, _), rows in zip(labelled_ends(self.ranges), ends, strict=True):
-            yield labels, rows
+        corners = (corner for at, corner in known.items() if MIDDLE not in at)
+        for (labels, _), corner in zip(labelled_ends(self.ranges), corners, strict=True):
+            yield labels, corner
 
     def _grid(self) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
         """Yield labels and values at the ends of all ranges, and halfway between two.

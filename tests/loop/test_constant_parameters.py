@@ -5,9 +5,15 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.loop import constant_parameters
-from nrs_design.loop.constant_parameters import constant_sets
-from nrs_design.loop.located import ConstantParameter, LocatedMode, Period, Spot, spot_of
+from nrs_design.loop import located
+from nrs_design.loop.located import (
+    ConstantParameter,
+    LocatedMode,
+    Period,
+    Spot,
+    constant_sets,
+    spot_of,
+)
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.switching import FixedParameter
@@ -71,7 +77,7 @@ def test_a_corner_without_a_mode_is_an_error():
 
 
 def test_too_many_corners(monkeypatch):
-    monkeypatch.setattr(constant_parameters, "MAX_CORNERS", 50)
+    monkeypatch.setattr(located, "MAX_CORNERS", 50)
     with pytest.raises(AssemblyError, match="corners of the constant parameters"):
         closed(*constant(GAIN, STIFFNESS))
 

@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.loop.assemble import assemble_from_text
-from nrs_design.loop.given_matrices import corner_modes
+from nrs_design.loop.assemble import assemble_from_text, corner_modes
 from nrs_design.models.interval import Interval
 from nrs_design.spec import parse_spec
 

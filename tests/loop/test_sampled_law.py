@@ -13,7 +13,7 @@ from nrs_design.controllers.laws import Admittance, PositionControl, Proportiona
 from nrs_design.controllers.operations import Operation
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import InternalError
-from nrs_design.loop.sampled_law import kinds_of, list_law, short
+from nrs_design.loop.program import kinds_of, list_law, short
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.loop.frames import frame_of

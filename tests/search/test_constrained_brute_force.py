@@ -12,7 +12,7 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.loop.given_matrices import modes_with_misses
+from nrs_design.loop.assemble import modes_with_misses
 from nrs_design.loop.located import LocatedMode, Period, Spot
 from nrs_design.pipeline.radius import bound_radius
 from nrs_design.proof.mode import Time

@@ -17,7 +17,7 @@ gains.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -108,8 +108,8 @@ class AbstractAxis(ABC):
         """
 
     @abstractmethod
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller at fixed parameters of the contact and a place."""
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        """Return the loop whose modes at the shares of `_CUTS` are given."""
 
     @abstractmethod
     def admittances(
@@ -120,6 +120,10 @@ class AbstractAxis(ABC):
         In continuous time these are Mt and Bt, and the polynomials are times Mt; sampled, they are
         a and b, and without inertia there is no a. The spring Kt is in N m/rad; zero is none.
         """
+
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller at fixed parameters of the contact and a place."""
+        return self._loop(self.rows(law, contact, place, cut) for cut in _CUTS)
 
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
@@ -163,9 +167,8 @@ class ContinuousAxis(AbstractAxis):
             return position_mode(placed, law, contact, self.low_pass, cut=cut)
         return velocity_mode(motion, law, contact, self.low_pass, cut)
 
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller."""
-        return CutLoop(*(characteristic(self.rows(law, contact, place, cut)) for cut in _CUTS))
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        return CutLoop(*map(characteristic, modes))
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
@@ -196,11 +199,8 @@ class ProcessorAxis(AbstractAxis):
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
     ) -> Rows:
         """Return the map of a period."""
-        return self._step(self._held(law), contact, place, cut)
-
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller."""
-        return self._cut(self._held(law), contact, place)
+        held = law.discretize(self.sampling.outer, self.sampling.admittance)
+        return self._step(held, contact, place, cut)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
@@ -208,13 +208,10 @@ class ProcessorAxis(AbstractAxis):
         """Return the loops of three admittances."""
         T = to_float32(self.sampling.outer)
         laws = [Admittance.discrete(a if inert else None, b, T, spring) for a, b in COORDINATES]
-        return [self._cut(law, contact, place) for law in laws]
+        return [self._loop(self._step(law, contact, place, cut) for cut in _CUTS) for law in laws]
 
-    def _held(self, law: CompliantLaw) -> DiscreteLaw:
-        return law.discretize(self.sampling.outer, self.sampling.admittance)
-
-    def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        loops = [characteristic(self._step(law, contact, place, cut)) for cut in _CUTS]
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        loops = [*map(characteristic, modes)]
         while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
             loops = [p[:-1] for p in loops]
         return CutLoop(*(on_the_axis(p, self.period) for p in loops))
@@ -230,7 +227,8 @@ class ProcessorAxis(AbstractAxis):
         sensed = contact.load if cut.sensed else NOTHING
         carried = contact.load if cut.carried and self.drive.loaded else NOTHING
         # One place is asked for, and the hash of all takes as long as the loop.
-        loop, flow = _loop(replace(self, places=()), law, place, carried, contact.memory_rates)
+        axis = replace(self, places=())
+        loop, flow = _sampled_loop(axis, law, place, carried, contact.memory_rates)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
@@ -245,7 +243,7 @@ class ProcessorAxis(AbstractAxis):
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
 @lru_cache(maxsize=_KEPT)
-def _loop(
+def _sampled_loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
 ) -> tuple[SampledLoop, Flow]:
     """Return the loop of a law, and the flow of a period at one point."""

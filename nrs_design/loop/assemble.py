@@ -65,10 +65,8 @@ def assemble_from_text(
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
-    This is the way of a re-check, where gains are a stranger's text, named as in `gains_of`: they
-    are read, and held against the spec. Who has the design in hand calls `assemble`, whose errors
-    these are, beside a `CertificateError` for gains that do not fit the spec. Every declared range
-    is stretched by the scale about its nominal value; 0 leaves the nominal values only.
+    A re-check reads these gains of a stranger, named as in `gains_of`, and holds them against the
+    spec. Errors are those of `assemble`, and a `CertificateError` for gains that do not fit.
     """
     if spec.kind == "switched-system":
         if gains:
@@ -87,10 +85,7 @@ def assemble_from_text(
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
-    """Return the system of a spec of given matrices, one mode for each corner of its boxes.
-
-    An `AssemblyError` if the scale is negative, or the rules of switching make too many switches.
-    """
+    """Return the system of a spec of given matrices, one mode for each corner of its boxes."""
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
@@ -152,9 +147,8 @@ def modes_with_misses(
 ) -> tuple[tuple[LocatedMode, ...], Switching]:
     """Return the modes by the automaton state after them, and the allowed switches.
 
-    What may follow depends on the state of the automaton alone, so a mode is named by the state
-    that it leads to, such as ``miss/s3``. Corners of one mode may take turns at every step. All
-    groups but that of a miss are hits. An `AssemblyError` if there are too many switches.
+    A mode is named by the state that it leads to, such as ``miss/s3``, on which the next modes
+    depend. Corners of one mode may take turns at every step. All groups but the miss are hits.
     """
     from nrs_design.spec.misses import automaton_of
 
@@ -197,9 +191,8 @@ def assemble(
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Every declared range is stretched by the scale, not negative, about its nominal value. An
-    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
-    make too many switches.
+    Every declared range is stretched by the scale about its nominal value; 0 leaves that alone. An
+    `AssemblyError` if a number does not stay positive, or for too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 

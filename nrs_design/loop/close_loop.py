@@ -1,10 +1,9 @@
 """Close the loop around every contact: the modes of one robot axis, in one state.
 
-One mode for each controller and each corner of the box of the parameters of each environment that
-it may touch. Every entry of A is affine in stiffness and in damping (or in one over it, as the law
-of the environment says), and where the motor has ranges in its gain and in one over its time
-constant, each for itself, so A is a convex combination of the corners in the whole box, and what
-decreases in the corners decreases there, however fast the parameters move.
+There is a mode for each controller and each corner of the parameters of motor and environment.
+Every entry of A is affine in each of them, or in one over it. So A is a convex combination of the
+corners in the whole box, and a function that decreases in the corners decreases there, however fast
+the parameters move.
 """
 
 from __future__ import annotations
@@ -63,11 +62,7 @@ def close_loop(
     design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
 ) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
-    """Return the system of a loop in continuous time, and its modes.
-
-    Contact may by default be lost where that is modelled, and a statement says whether it covers
-    it. An `AssemblyError` if the spec asks for it, and it is not modelled.
-    """
+    """Return the system of a loop in continuous time, and its modes."""
     state, limited = shared_state(conditions, plant, design), conditions.initial_force is not None
     rules = conditions.switching
     loss = _loss_of(state, conditions.contact, rules)
@@ -106,11 +101,10 @@ def close_loop(
 
 
 def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> Loss:
-    """Return how contact is lost, by the key `contact` of a spec.
+    """Return how contact is lost, by the key `contact` of a spec; by default, where it is modelled.
 
     With springs, free motion ends at rest in one place, and is a mode on demand only: that contact
-    is lost at any deflection is more than happens. An `AssemblyError` if the spec asks for a loss
-    that is not modelled, or that the rules exclude.
+    is lost at any deflection is more than happens.
     """
     environments, sprung = (
         state.environments,
@@ -151,11 +145,7 @@ def _not_losable(which: str) -> AssemblyError:
 def _resets(
     state: SharedState, groups: Mapping[str, Iterable[str]]
 ) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield the switches that set states to zero, and the maps, by the groups of a controller.
-
-    From an impedance controller to others the idle states are, if the spec says so; where force
-    control takes the measured position, the lead is.
-    """
+    """Yield the switches at which idle states become zero, or the lead of a measured position."""
     controllers = state.design.controllers
     switches: Iterable[tuple[str, str]] = ()
     if state.offset == "measured":
@@ -169,10 +159,7 @@ def _resets(
 
 
 def _touched(c: Controller, state: SharedState) -> Sequence[Environment | None]:
-    """Return the contacts of a controller; None for one that takes no force, whatever it touches.
-
-    Where the plant differs by contact, such a controller has modes in all of them, too.
-    """
+    """Return the contacts of a controller; None, and all that it feels, if it takes no force."""
     by_name = {environment.name: environment for environment in state.environments}
     feels = state.environments if state.feels else ()
     return [by_name[name] for name in c.contacts] or [None, *feels]
@@ -208,9 +195,8 @@ def with_command(
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
 
-    The command goes where the velocity of the admittance is subtracted, into the motion loop, in
-    contact and free alike. `torque` is the limit of the contact force about the pivot, in N m. An
-    `AssemblyError` if it is not modelled for these controllers or environments.
+    The command enters the motion loop, where the velocity of the admittance is subtracted. `torque`
+    is the limit of the contact force about the pivot, in N m.
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())

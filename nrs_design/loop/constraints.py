@@ -38,9 +38,8 @@ def assemble_switching(
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes, which are grouped by its names.
 
-    Corners and contacts of one name follow each other freely, because parameters and environment
-    move as they like. Switches between names are allowed, and reset, for all their corners. An
-    `AssemblyError` if the rules become too many.
+    Corners and contacts of one name follow each other freely: parameters and environment move at
+    will. Switches between names are allowed, and reset, for all their corners.
     """
     common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
@@ -111,12 +110,11 @@ def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
 def count_stays(
     rules: SwitchingSpec, modes: Groups, period: Fraction
 ) -> tuple[Clock | None, SwitchingSpec, tuple[Assumption, ...]]:
-    """Count stays in samples: return the clock, the rules that it does not hold, and what it says.
+    """Count stays in samples: return the clock, the remaining rules, and the assumptions.
 
     There is no clock where dwell times forbid nothing. `modes` are those of each controller, in
-    contact and free, and follow each other freely; the period is the longest from sample to
-    sample, in s. A state is how many samples a controller has been in force, up to its dwell time.
-    An `AssemblyError` if there are too many of them.
+    contact and free; the period is the longest one, in s. A state of the clock is the number of
+    samples that a controller has been in force, up to its dwell time.
     """
     names, shortest = [*modes], [rules.stay(name)[0] for name in modes]
     counts = [1 if stay is None else max(ceil(stay.value / period), 1) for stay in shortest]

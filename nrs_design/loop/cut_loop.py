@@ -1,17 +1,15 @@
 """The loop of one controller in one contact, cut where its law takes the force.
 
-Where a spring draws the measured position, it is cut there, too: both enter the law at one place.
+A spring that draws the measured position enters the law at the same place, and is cut there, too.
 
-With the share g of the force that reaches the law, the characteristic polynomial of an assembled
-mode is ``D + g N``: the force enters the law at one place, so its determinant is affine in g. D
-is that of the mode with ``g = 0``, ``D + N`` that of the mode which is proved, and ``L = N/D`` the
-open loop, whatever is in it. Exact; in continuous time polynomials in s, sampled in
-``w = (2/T) (z - 1)/(z + 1)``, which is on the imaginary axis where z is on the unit circle: at
-``(2/T) tan(omega T/2)``, near omega while that is small.
+With the share g of the force that reaches the law, the characteristic polynomial of a mode is ``D +
+g N``: the force enters at one place, so the determinant is affine in g. D is that of ``g = 0``, ``D
++ N`` that of the proved mode, and ``L = N/D`` the open loop. All is exact; polynomials are in s, or
+sampled in ``w = (2/T) (z - 1)/(z + 1)``, which is ``(2/T) tan(omega T/2)`` on the imaginary axis
+where z is on the unit circle: near omega while that is small.
 
 The determinant is also affine in the stiffness of the contact and, times Mt in continuous time, in
-Mt, Bt and Kt; sampled in the coefficients a and b of the law. So a few modes give those of all
-gains.
+Mt, Bt and Kt; sampled in the coefficients a and b. So a few modes give those of all gains.
 """
 
 from __future__ import annotations
@@ -102,10 +100,7 @@ class AbstractAxis(ABC):
     def rows(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
     ) -> Rows:
-        """Return a mode of this controller and contact alone, or sampled its step.
-
-        `cut` is how much of the force acts.
-        """
+        """Return a mode, or step, of this controller and contact under a share of the force."""
 
     @abstractmethod
     def _loop(self, modes: Iterable[Rows]) -> CutLoop:
@@ -128,22 +123,16 @@ class AbstractAxis(ABC):
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
     ) -> tuple[Rows, Rows]:
-        """Return the mode without the force in the law, and the one that is proved.
-
-        They differ by one column times one row.
-        """
+        """Return the mode without force in the law, and the proved one: one rank apart."""
         return self.rows(law, contact, place, _OPENED), self.rows(law, contact, place)
 
 
 @dataclass(frozen=True, slots=True)
 class ContinuousAxis(AbstractAxis):
-    """An axis whose law is never sampled.
-
-    `joint` is the motor in its physical state, where it has ranges or a load.
-    """
+    """An axis whose law is never sampled."""
 
     realization: Realization
-    joint: Joint | None = None
+    joint: Joint | None = None  # The motor in its physical state, where it has ranges or a load
     low_pass: LowPass | None = None
 
     @property
@@ -266,8 +255,7 @@ def axis_of(
 ) -> AbstractAxis | None:
     """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
 
-    None where the force is sampled more often than the motion loop: it then enters a round at
-    several samples, and there is no one place to cut.
+    None where the force enters a round at several samples: there is no one place to cut.
     """
     sampling, low_pass = spec.sampling, sensor.filter
     ranges = plant.actuator_ranges

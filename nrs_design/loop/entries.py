@@ -59,10 +59,10 @@ class Entries:
     def jet(self, at: Mapping[str, Any], h: arb, by: str, width: arb, order: int) -> list[arb_mat]:
         """Return the entries and their Taylor coefficients along the range of a number.
 
-        In shares of a range of that width, from the numbers on that are given; `by` is the number,
-        or empty for the time. With ``G = G0 + t D``, the coefficients of ``exp(G h)`` are the first
-        row of blocks of the exponential of the block matrix with ``G0 h`` on the diagonal and
-        ``D h`` beside it. Those by the time are ``(width G)^k exp(G h)/k!``.
+        They are in shares of the width; `by` is the number, or empty for the time. With ``G = G0 +
+        t D``, those of ``exp(G h)`` are the first row of blocks of the exponential of the block
+        matrix with ``G0 h`` on the diagonal and ``D h`` beside it. Those by the time are ``(width
+        G)^k exp(G h)/k!``.
         """
         from flint import arb_mat
 

@@ -182,10 +182,8 @@ class _Flow:
         return found
 
     def _keys(self) -> list[Key]:
-        """Return the entries that are not zero; of later commands those of the command alone.
-
-        The position of a robot that takes positions acts as minus its command, but on a memory.
-        """
+        """Return the entries that are not zero; of later commands those of the command alone."""
+        # The position of a robot that takes positions acts as minus its command, but on a memory.
         n, acts = self.drive.order, self.entries.acting(self.whole)
         own = {n - 2} if self.drive.memory else set()
         first = [*range(n + 1)] if self.lasting is None else [*range(n)]
@@ -348,11 +346,7 @@ class _Flow:
             yield texts, {k: ZERO if k in still else x for k, x in point.items()}
 
     def _rows(self, entries: Point, gain: Fraction) -> Rows:
-        """Return the rows of the states and of the deflection.
-
-        They are over the states, the deflection, the command in force when the period begins, and
-        its changes. A position is commanded from the deflection on.
-        """
+        """Return the rows of `Rows`; a position is commanded from the deflection on."""
         n, jumps = self.drive.order, self.drive.speed is not None
 
         def row(i: int) -> tuple[Fraction, ...]:

@@ -85,10 +85,9 @@ def flights_of(
 
 
 def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
-    """Return whose forces tell where nothing pushes at a positive deflection.
+    """Return the environments whose forces tell a flight at a positive deflection.
 
-    Without damping nothing lags, and there are none. Beside damped environments springs count, too:
-    what flies because every force would pull must not be pushed by a spring instead.
+    Without damping nothing lags, and there are none. Beside damped environments springs count, too.
     """
     environments = tuple(environments)
     springs = all(law.is_spring for e in environments for law in e.corners)
@@ -101,10 +100,7 @@ def force_rows(
     environments: Iterable[Environment],
     deflection: LinearForm | None = None,
 ) -> Iterator[RationalMatrix]:
-    """Yield the force, as a row over the states, of each corner of each contact.
-
-    The deflection is a state, unless it is given.
-    """
+    """Yield the force, as a row over the states, of each corner of each contact."""
     unit = coordinates(len(states))
     for environment in environments:
         shared, *memories = environment.law.states

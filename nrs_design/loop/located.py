@@ -161,8 +161,7 @@ def constant_lateness(
 ) -> ConstantParameter:
     """Return the time from a sample to its command, in s, as a constant parameter.
 
-    It is within one period, so one command takes effect in each, and a mode is at an end of what is
-    left of the period then: the longer it is, the earlier the command.
+    One command takes effect in each period, and a mode is at an end of the time that is then left.
     """
     symbol = f"h{late[0] // period}"
     said = FixedParameter(name, *late, "s", enclosed=True)
@@ -236,8 +235,7 @@ def constant_sets(
 ) -> Iterator[tuple[str, ...]]:
     """Yield, for each mode, its copies at the corners of the constant parameters.
 
-    A mode that a parameter is not in is the same at both of its ends. The last parameter turns
-    fastest.
+    A mode without a parameter is the same at both of its ends. The last one turns fastest.
     """
     if not parameters:
         return
@@ -261,10 +259,7 @@ def constant_sets(
 def with_constants(
     system: SwitchedSystem, parameters: Sequence[ConstantParameter], modes: Sequence[LocatedMode]
 ) -> SwitchedSystem:
-    """Return the system, with a mode for each corner, with parameters that do not change.
-
-    An `AssemblyError` if they have too many corners.
-    """
+    """Return the system, with a mode for each corner, with parameters that do not change."""
     if not parameters:
         return system
     count = prod(corner_counts(modes, parameters)) * len(system.modes)

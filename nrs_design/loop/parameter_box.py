@@ -1,9 +1,7 @@
 """Boxes of physical parameters: one matrix for each corner, and the check that corners suffice.
 
 A matrix that is affine in each parameter alone (all others held) is, anywhere in the box, a
-convex combination of its corners: at ``p = (1-t) low + t high`` along one axis it is ``(1-t)``
-times that at the low end plus ``t`` times that at the high end, and so on along the other axes.
-The weights are products of such shares: not negative, with sum one, the same for all entries.
+convex combination of its corners, with weights that are products of the shares along the axes.
 """
 
 from __future__ import annotations
@@ -46,12 +44,11 @@ class Box:
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
         """Yield the labels and matrices of the corners, the last parameter turning fastest.
 
-        An `InternalError`, about the mode of that name, if the matrix is not affine along each
-        axis. That it is, follows from the formulas of the loop. It is computed again because a
-        proof for the whole box rests on it: on all points of the grid of low end, middle and high
-        end of every axis, the matrix must be the mean of its two neighbors along one axis on which
-        it is in the middle; so it is the mean of the corners around it. For entries of a degree of
-        at most two in each coordinate this decides it.
+        An `InternalError` if the matrix of that mode is not affine along each axis. That follows
+        from the formulas of the loop, and is computed again because a proof for the whole box rests
+        on it: on the grid of low end, middle and high end of every axis, the matrix must be the
+        mean of its two neighbors along one axis on which it is in the middle. For entries of a
+        degree of at most two in each coordinate this decides it.
         """
         known: dict[tuple[str, ...], Rows] = {}
         # Neighbors are in the middle on one axis less, so they come first.
@@ -72,10 +69,7 @@ class Box:
             yield labels, corner
 
     def _grid(self) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
-        """Yield labels and values at the ends of all ranges, and halfway between two.
-
-        Halfway is in the coordinate in which matrices are affine.
-        """
+        """Yield labels and values at the ends of all ranges, and halfway where they are affine."""
         axes = []
         for symbol, interval in self.ranges.items():
             middle = interval.middle

@@ -46,10 +46,7 @@ Kinds = tuple[tuple[type[Any], tuple[str, ...]], ...]
 
 
 def kinds_of(laws: Iterable[DiscreteLaw]) -> Kinds:
-    """Return the types of laws: those that command a velocity first, then those with few numbers.
-
-    In this order a certificate lists the terms that are rounded.
-    """
+    """Return the types of laws in the order of certificates: by command, then by few numbers."""
     found: dict[type[Any], dict[str, None]] = {}
     for law in laws:
         found.setdefault(law.law, {}).update(dict.fromkeys(law.numbers))
@@ -113,9 +110,8 @@ class ListedLaw:
 def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
-    `order` is that of the filter of the force; `takes` is what the robot takes without a motion
-    controller of ours. An `InternalError` if a term takes a rounded number and nothing bounds what
-    that adds.
+    `order` is that of the filter of the force, `takes` the command of a robot without a motor of
+    ours. An `InternalError` if a term takes a rounded number, and the addition has no bound.
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
@@ -326,8 +322,7 @@ class SampledProgram:
     def wire(self, w: Wires, law: DiscreteLaw, turn: Turn) -> dict[str, LinearForm]:
         """Set the results of a sample from ``measured`` and ``felt``.
 
-        They are ``command``, and the next states, such as ``reference+``. Return a bound on each
-        rounding.
+        They are ``command`` and next states, such as ``reference+``. Return bounds on roundings.
         """
         given = {
             **{name: w[name] for name in self.stored},

@@ -1,8 +1,8 @@
 """One period of a sampled loop, exactly: a sample of the program, and the flow until the next.
 
 The state is ``[reference or e, drive, e before, u held, commands sent, other states of the law,
-force samples, deflection]``, as far as a loop has them (docs/certificates/drives.md). A command
-that is a position counts from the deflection, as the reference of impedance controllers does.
+force samples, deflection]``, as far as a loop has them (docs/certificates/drives.md). Positions
+that are commanded, or the reference of impedance controllers, count from the deflection.
 """
 
 from __future__ import annotations

@@ -73,10 +73,7 @@ class Modes:
         return modes, beside
 
     def _of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
-        """Yield the modes of a controller in all its contacts; in free motion if it has none.
-
-        A controller that takes no force touches what others do, where the sample outlasts it.
-        """
+        """Yield the modes of a controller in all its contacts; in free motion if it has none."""
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
             # It is the same there as in contact, unless a sample or the motor feels the force.

@@ -92,8 +92,7 @@ def with_sampled_saturation(
 ) -> SwitchedSystem:
     """Let a statement be about motions in which the command of the motor saturates, sampled.
 
-    Modes of free motion are the last ones; limit and goal are as `nrs_design.spec.combinations`
-    checks.
+    Modes of free motion come last; limit and goal are as `nrs_design.spec.combinations` checks.
     """
     assert conditions.largest_command is not None  # `combinations` asks for it.
     n, wide = len(loop.states), len(loop.states) + len(INPUTS)

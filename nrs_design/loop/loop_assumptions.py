@@ -10,7 +10,6 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS, CompliantLaw, DiscreteLaw
 from nrs_design.loop.assumptions import COMMAND_UNIT, assume, assume_rules
-from nrs_design.loop.calendar import CommandTiming
 from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
@@ -46,8 +45,8 @@ def assume_loop(
     if loop.feels and not all(c.contacts for c in design.controllers):
         yield assume("contacts.in-position")
     yield from _assume_parts(loop.environments)
-    which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield from _assume_tissue(loop.environments, design.axis, which)
+    about = "tissue.linear" if loop.offset == "none" else "tissue.offset"
+    yield _assume_tissue(loop.environments, design.axis, about)
     integrated = any(c.law.commands == "velocity" for c in design.controllers)
     if integrated and all(e.law.has_rest for e in loop.environments):
         yield assume("at-a-switch.deflection")
@@ -59,7 +58,15 @@ def assume_loop(
         yield assume("contact-lost.anywhere")
     elif not losable:
         yield from _assume_kept_contact(design, alone=loop.idle is None)
-    yield from _assume_switches(loop, rules)
+    reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
+    which = "others" if reset else "all"
+    if rules.is_arbitrary:
+        yield assume("at-a-switch.any-signal", which=which)
+    else:
+        yield assume("at-a-switch.continuous", which=which)
+        yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
+        if not rules.names_contacts and rules.dwell_time is None:
+            yield assume("any-signal.environment")
     yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
     yield assume("numbers.gains")
     yield from _assume_command_unit(design.command, design.axis)
@@ -128,18 +135,6 @@ def _names(laws: Iterable[CompliantLaw]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(law.name for law in laws))
 
 
-def _assume_switches(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumption]:
-    reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
-    states = "others" if reset else "all"
-    if rules.is_arbitrary:
-        yield assume("at-a-switch.any-signal", which=states)
-        return
-    yield assume("at-a-switch.continuous", which=states)
-    yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
-    if not rules.names_contacts and rules.dwell_time is None:
-        yield assume("any-signal.environment")
-
-
 def assume_sampled_loop(
     conditions: OperatingConditions,
     sampling: SamplingSpec,
@@ -155,24 +150,36 @@ def assume_sampled_loop(
     environments, program = plant.among(design.contacts), loop.program
     timing, axis = loop.calendar.timing, conditions.axis
     beyond = disturbed and "disturbances"
-    yield _assume_period(sampling, design)
-    if sampling.round > 1:
+    single, steady = sampling.round == 1, sampling.jitter is None
+    how = ("single" if steady else "jitter") if single else "double" + "-jitter" * (not steady)
+    yield assume(
+        f"period.{how}",
+        period=exact_text(sampling.period.exact),
+        jitter=not steady and exact_text(sampling.unsteady),
+        outer=not single and exact_text(sampling.outer),
+        sampled=not single and design.sensor.filter and "filter",
+    )
+    if not single:
         yield assume("period.order")
     if (misses := sampling.misses) is not None:
         at_most, of = misses.window
         yield assume(f"deadlines.{misses.command}", at_most=at_most, of=of)
-    yield from _assume_timing(timing, constant=conditions.constant_delay_key is not None)
+    if timing.latest:
+        fixed, constant = timing.earliest == timing.latest, conditions.constant_delay_key
+        how = "fixed" if fixed else "range" if constant is None else "constant"
+        earliest = not fixed and exact_text(timing.earliest)
+        yield assume(f"command-age.{how}", earliest=earliest, late=exact_text(timing.latest))
     if plant.drive is not None and plant.drive.speed is not None:
         # The velocity jumps when a command takes effect.
         yield assume("command-age.before")
     least, most = sampling.delay
-    oldest = f"{most} sample{'s' * (most != 1)}"
+    how, oldest = "fixed" if most else "now", f"{most} sample{'s' * (most != 1)}"
     if least < most:
         yield assume("sample-age.range", least=least, most=oldest)
     else:
-        yield assume("sample-age.fixed" if most else "sample-age.now", most=oldest)
-    constant = any(number.is_constant for e in environments for number in e.ranges)
-    yield from _assume_motor(plant, loop, axis, "constant" if constant else "")
+        yield assume(f"sample-age.{how}", most=oldest)
+    but = "constant" if any(r.is_constant for e in environments for r in e.ranges) else ""
+    yield from _assume_motor(plant, loop, axis, but)
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
@@ -191,7 +198,7 @@ def assume_sampled_loop(
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
     yield from _assume_contacts(design)
-    yield from _assume_tissue(environments, axis)
+    yield _assume_tissue(environments, axis)
     for e in environments:
         yield from e.law.assumptions(e.name, alone=len(environments) == 1)
     # For contact loss at the surface, each statement says whether it covers it.
@@ -212,28 +219,6 @@ def assume_sampled_loop(
         saturation="left-out" if conditions.initial_force is None else "stated",
     )
     yield from _assume_parts(environments)
-
-
-def _assume_period(sampling: SamplingSpec, design: ControllerDesign) -> Assumption:
-    """Return the sampling periods."""
-    values: dict[str, object] = {"period": exact_text(sampling.period.exact)}
-    steady = sampling.jitter is None
-    if not steady:
-        values["jitter"] = exact_text(sampling.unsteady)
-    if sampling.round == 1:
-        return assume("period.single" if steady else "period.jitter", **values)
-    values |= {"outer": exact_text(sampling.outer), "sampled": design.sensor.filter and "filter"}
-    return assume("period.double" if steady else "period.double-jitter", **values)
-
-
-def _assume_timing(timing: CommandTiming, *, constant: bool) -> Iterator[Assumption]:
-    """Yield the delay of commands, if there is one."""
-    earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
-    if timing.latest and timing.earliest == timing.latest:
-        yield assume("command-age.fixed", late=late)
-    elif timing.latest:
-        how = "constant" if constant else "range"
-        yield assume(f"command-age.{how}", earliest=earliest, late=late)
 
 
 def _assume_motor(
@@ -346,18 +331,16 @@ def _assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
 
 def _assume_tissue(
     environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
-) -> Iterator[Assumption]:
-    """Yield the parameter ranges of the environments."""
-    yield assume(
-        name,
-        ranges=tuple(
-            f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
-            for e in environments
-            for (symbol, interval), unit in zip(
-                e.parameters.items(), e.law.units(rotational=True), strict=True
-            )
-        ),
-    )
+) -> Assumption:
+    """Return the parameter ranges of the environments."""
+    ranges = [
+        f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
+        for e in environments
+        for symbol, interval, unit in zip(
+            e.law.parameters(), e.ranges, e.law.units(rotational=True), strict=True
+        )
+    ]
+    return assume(name, ranges=tuple(ranges))
 
 
 def _assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:

@@ -110,7 +110,7 @@ class Calendar:
 
     timing: CommandTiming
     ages: tuple[int, int] = (0, 0)  # Smallest and largest age of force samples
-    turns: tuple[Turn, ...] = (Turn.BOTH,)  # Of a round
+    turns: tuple[Turn, ...] = (Turn.BOTH,)  # The tasks of a round
 
     @property
     def sent(self) -> tuple[str, ...]:

@@ -52,7 +52,7 @@ from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.build_plant import Bounds, OperatingConditions
 from nrs_design.spec.interaction_parts import FREE
 
-# Nothing is touched: an environment without force.
+# Free motion, as an environment without force.
 AIR = Environment(FREE, KelvinVoigt, (Interval.point(ZERO), Interval.point(ZERO)))
 
 

@@ -133,7 +133,7 @@ def count_stays(
     allowed = None if rules.transitions is None else frozenset(rules.transitions)
 
     def leads(k: int, spent: int) -> tuple[int, ...]:
-        """Return where each controller leads after so many samples of one."""
+        """Return the next state for each controller, after `spent` samples of the k-th one."""
         last = counts[k] - 1
         to = [NOWHERE] * len(names)
         if spent == last:

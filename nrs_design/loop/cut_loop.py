@@ -76,7 +76,7 @@ class CutLoop(NamedTuple):
     """Characteristic polynomials of one mode, highest power first, of one length."""
 
     opened: Polynomial  # Without force feedback to the law; the load of a motor remains
-    closed: Polynomial  # Of the closed loop
+    closed: Polynomial  # The closed loop
     free: Polynomial  # Where the force does not act at all
 
 
@@ -215,7 +215,7 @@ class ProcessorAxis(AbstractAxis):
             law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
         sensed = contact.load if cut.sensed else NOTHING
         carried = contact.load if cut.carried and self.drive.loaded else NOTHING
-        # One place is asked for, and the hash of all takes as long as the loop.
+        # Hashing all places takes as long as making the loop.
         axis = replace(self, places=())
         loop, flow = _sampled_loop(axis, law, place, carried, contact.memory_rates)
         n = len(loop.states)

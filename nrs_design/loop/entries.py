@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from flint import arb, arb_mat
 
 ONE, ZERO = Fraction(1), Fraction(0)
-# Of a period, in time constants of the drive: far beyond, nothing is left of where it began.
+# Longest period in time constants of the drive: the initial state has decayed long before.
 LONGEST = Fraction(2000)
 
 
@@ -99,7 +99,7 @@ class Entries:
         """
         from flint import arb_mat
 
-        # A velocity that jumps would have a row of its own; what remembers does not act on it.
+        # A velocity that jumps would have a row of its own; a memory does not act on it.
         assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
         M, total = _sizes(self.rates(at)), arb_mat(m, m)

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 ONE, ZERO = Fraction(1), Fraction(0)
 BITS = 240
-# How labels name the load in a period where its symbols already name that of the force sample.
+# Names of the load of a period, beside those of the force sample.
 AGAIN = ("k held", "b held")
 NOTHING = Interval.point(ZERO)
 
@@ -55,8 +55,8 @@ NOTHING = Interval.point(ZERO)
 class FlowPoint:
     """One point of a hull that holds every motion of a drive in a period."""
 
-    labels: tuple[str, ...]  # At which ends of ranges it is, and which point of a simplex
-    curve: tuple[str, int] | None  # Of the only number with a range: its name, and which point
+    labels: tuple[str, ...]  # Ends of its ranges, and its number in a simplex
+    curve: tuple[str, int] | None  # The only range, and the point on its curve
     rows: Rows
 
 
@@ -97,12 +97,11 @@ class _Number:
     """A parameter with a range: of the drive, of the contact, or a time."""
 
     symbol: str  # Empty for a time
-    name: str  # As labels say it
-    # At its least and its greatest value, in the coordinate in which rates are affine: the number,
-    # or one over it.
+    name: str  # Its name in labels
+    # Its ends, in the coordinate in which rates are affine: the number, or one over it.
     low: arb
     high: arb
-    span: int | None = None  # Of a time: which of those that are left of the period
+    span: int | None = None  # Index of a time among those left of the period
 
 
 class _Flow:
@@ -149,7 +148,7 @@ class _Flow:
         self.keys = self._keys()
         self.ties = self._ties()
 
-    # Which entries there are, and which of them others give.
+    # Entries, and ties between them.
 
     def _lasting(self) -> tuple[list[Fraction], Fraction] | None:
         """Return the states v that a lasting command of one leads to, and the speed w of the joint.
@@ -196,7 +195,7 @@ class _Flow:
         ]
 
     def _ties(self) -> dict[Key, Tie]:
-        """Return which entries others of a known drive give, over times that are known."""
+        """Return the entries of a known drive, over known times, that follow from others."""
         from flint import fmpq, fmpq_mat
 
         if any(number.symbol for number in self.numbers):

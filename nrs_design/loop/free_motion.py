@@ -1,4 +1,4 @@
-"""Contact loss: where it happens, and the forces and flights that tell of it."""
+"""Contact loss: its place, and the forces and flights that show it."""
 
 from __future__ import annotations
 

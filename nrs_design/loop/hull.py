@@ -15,16 +15,15 @@ if TYPE_CHECKING:
     from flint import arb, fmpq, fmpq_mat
 
 ONE, ZERO = Fraction(1), Fraction(0)
-# Of the last digit of a number, over its size: where it is known, its ends are one number in
-# doubles; where it has a range, over how far it is off at most.
+# Bits of a known number, so that its ends are one double, and of a range, relative to its error.
 KNOWN_BITS, RANGED_BITS = 64, 3
-# Of points on a curve, over its size: as few as are enough, each costs time in every proof.
+# Bits of points on a curve, relative to its size: the fewest that suffice, to make proofs fast.
 CURVE_BITS = range(20, 400, 12)
-# By which share a simplex around a curve may be wider than its points; with few digits, and at all.
+# Largest relative widening of a simplex around a curve: with few digits, and at all.
 NARROW, WIDEST = Fraction(1, 2**12), Fraction(1, 4)
-# How much of a mixture the points of known numbers are at most, which are so much further away.
+# Largest weight of the far points of known numbers.
 SHARE = Fraction(1, 2**20)
-# By how much more a tied number may be off, over its size, than those that give it.
+# Largest amplification of relative errors by a tie.
 LOOSE = 2**7
 # More curves than this are given up: few of them bend on their own, and all are nearly flat.
 MOST_BENT = 16
@@ -173,7 +172,7 @@ class Tie:
 def ties(
     G: fmpq_mat, h: Fraction, entry: Callable[[fmpq_mat, Key], fmpq], sizes: Mapping[Key, Fraction]
 ) -> dict[Key, Tie]:
-    """Return which entries of ``exp(G h)`` a few others give exactly, at known G and h.
+    """Return the entries of ``exp(G h)`` that a few others give exactly, at known G and h.
 
     With m rows, the exponential is its Taylor polynomial of degree m - 1 and a mixture of m powers
     of G from the m-th on (Cayley and Hamilton): as many entries give it as these powers differ in.

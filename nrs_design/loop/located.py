@@ -38,7 +38,7 @@ class ConstantParameter:
 
 
 class Label(NamedTuple):
-    """At which end of a range a mode is, as its name says."""
+    """End of a range, as the name of a mode says it."""
 
     text: str
     attained: bool  # Whether a loop of the spec is at that end, rather than near it
@@ -47,15 +47,15 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where in its ranges something is."""
+    """Place of a mode in its ranges."""
 
     labels: tuple[Label, ...] = ()
-    # At which end each constant number is, low before high, by its name; or which curve point.
+    # End of each constant number by name, 0 for low and 1 for high; or its point on a curve.
     corner: tuple[tuple[str, int], ...] = ()
 
     @classmethod
     def named(cls, *names: str) -> Spot:
-        """Return where what has such names is, whatever its ranges are."""
+        """Return a place with these names, whatever the ranges are."""
         return cls(tuple(Label(name, attained=True, constant=False) for name in names))
 
     def __add__(self, other: Spot) -> Spot:
@@ -79,7 +79,7 @@ def spot_of(
     constants: Iterable[ConstantParameter],
     curve: tuple[str, int] | None = None,
 ) -> Spot:
-    """Return where labels say that something is; `attained` are symbols with real ends.
+    """Return the place that labels describe; `attained` are symbols with real ends.
 
     On the curve of a constant number, its corners are the points around the curve.
     """

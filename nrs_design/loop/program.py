@@ -191,7 +191,7 @@ class RoundedStep:
         return _sum(self.result(self.law.outputs["command"]), off)
 
     def motion_sizes(self) -> dict[str, LinearForm]:
-        """Return what bounds the roundings of error and command, by their terms."""
+        """Return bounds on the roundings of error and command, by their terms."""
         shares, Kp, D = self.shares, self.numbers["Kp"], self.numbers["Kd_over_T"]
         summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
         read = combine(*((ONE, form) for form in summands.values()))
@@ -215,7 +215,7 @@ class RoundedStep:
         return sizes
 
     def other_sizes(self) -> dict[str, LinearForm]:
-        """Return what bounds the roundings of all other results."""
+        """Return bounds on the roundings of all other results."""
         sizes: dict[str, LinearForm] = {}
         factors = {STEP: "T", KEPT: "a"}
         own = {*own_results(self.law)}
@@ -253,8 +253,7 @@ def _shortened(share: Fraction, factor: Fraction, form: LinearForm) -> LinearFor
 # States of a list of operations: the error of motion of a sample ago, and the reference of
 # impedance controllers alone, of which the error of motion is kept.
 BEFORE, REFERENCE = "error_before", "reference"
-# What acts on a loop from outside, in this order; the last one is by how much a command is less
-# than what the law makes of the sample, where a driver limits it.
+# Inputs of a loop, in this order; the last one is the part of a command that a driver cuts off.
 INPUTS = (
     "velocity command",
     "friction",

@@ -31,8 +31,8 @@ from nrs_design.models.drive import OMEGA, Drive, Takes
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
 DELTA, HELD = "delta [rad]", "u held"
-# A row for each state of a drive, and for how far its joint goes: over these states, the
-# deflection, the command in force when a period begins, and its changes within the period.
+# Rows of each state of a drive, and of the motion of its joint: over these states, the deflection,
+# the command in force when a period begins, and its changes within the period.
 Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]

@@ -23,7 +23,7 @@ from nrs_design.spec.misses import MISS
 NOWHERE = Spot()
 
 
-# Where drive and load are, if modes stand at corners; force samples there; and flows.
+# The place of drive and load, at corners; force samples there; and flows.
 Touched = tuple[Spot, Sequence[tuple[Spot, Contact]], Sequence[tuple[Spot, Rows]]]
 
 
@@ -103,7 +103,7 @@ class Modes:
         turns: Sequence[Turn] = (),
         touches: str = "",
     ) -> Iterator[LocatedMode]:
-        """Yield the modes of a law while something is touched, or of turns that have none."""
+        """Yield the modes of a law in a contact or in none, or of turns without a law."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot.named(*names)
         # A force sample matters to a law without force feedback only if it is delayed.
@@ -124,7 +124,7 @@ class Modes:
     def _samples(
         self, law: DiscreteLaw, turns: Sequence[Turn], contact: Contact
     ) -> Iterator[tuple[Turn, int, Spot]]:
-        """Yield what is computed with a force sample of what age, and how that is said."""
+        """Yield tasks, with the age of their force sample and its label."""
         first, last = self.loop.calendar.ages
         if not turns[0].has_law:
             yield from ((turn, 0, NOWHERE) for turn in turns)
@@ -147,14 +147,13 @@ class Modes:
         for labels, held in self.drives or (((), self.held),):
             for load, own in self._loads(e, contacts):
                 texts = (*load, *labels)
-                # What acts on a drive is told from what is sampled, if a law takes that.
+                # The load of a drive is told from the sampled force, if a law takes that.
                 ends = labelled_ends(own if sampled and (forced or not loaded) else {})
                 seen = [
                     (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
                     for said, at in ends
                 ]
-                # Not by what is touched: a flow names constants of a contact only where there is
-                # just one.
+                # The contact is no key: a flow names constants of a contact only if it is alone.
                 key = held, tuple(own.items()) if loaded else ()
                 if key not in self._known:
                     self._known[key] = tuple(
@@ -172,7 +171,7 @@ class Modes:
         if e is None or not self._loaded or (self.drives and e.depends):
             yield (), own
         elif not self.drives:
-            # It may be another one within a period, too, or nothing where contact is lost.
+            # Within a period it may become another one, or be lost.
             yield (), anything_of(contacts, lost=self.loses)
         else:
             for labels, values in labelled_ends(own):

@@ -30,7 +30,7 @@ from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.controllers import Offset
 
-# What impedance controllers in a mixture integrate their velocity to.
+# The integral of the velocity of impedance controllers in a mixture.
 REFERENCE = "reference [rad]"
 
 
@@ -40,14 +40,13 @@ class SharedState:
 
     design: ControllerDesign  # Gains that ship
     environments: tuple[Environment, ...]
-    realization: Realization  # Of the motion loop
+    realization: Realization  # The motion loop
     given: bool  # Whether the spec states the motion loop
     joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
     law: CompliantLaw  # Whose states the modes share
-    # What the states of impedance controllers do while another kind of controller is active; None
-    # where there is one kind only.
+    # Motion of idle states of impedance controllers; None for controllers of one kind.
     idle: IdleStatesSpec | None = None
-    offset: Offset = "none"  # Where force controllers take it from
+    offset: Offset = "none"  # Source of the offset of force controllers
     bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
 
     @property
@@ -108,7 +107,7 @@ class SharedState:
 
     @property
     def feels(self) -> bool:
-        """Whether it matters to a controller that takes no force what it touches."""
+        """Whether contacts differ for a controller that takes no force."""
         return self.joint is not None or self.low_pass is not None or bool(self.memories)
 
     def contact_box(self, environment: Environment | None) -> Box:

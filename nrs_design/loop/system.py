@@ -1,4 +1,4 @@
-"""The switched system of a sampled loop: its modes, what disturbs it, and how contact is lost."""
+"""The switched system of a sampled loop: modes, disturbances, roundings and contact loss."""
 
 from __future__ import annotations
 
@@ -81,9 +81,9 @@ def close_sampled_loop(
     }
     environments = plant.among(design.contacts)
     if points:
-        # The rates of a memory depend on its stiffness, so ends of them are none of a loop.
+        # The rates of a memory depend on its stiffness: their ends belong to no loop.
         environments = tuple(e.scaled(ZERO) if e.law.remembers else e for e in environments)
-        # What saturates is looked at in what encloses all.
+        # Saturation is stated for the enclosure of all drives.
         conditions = replace(conditions, initial_force=None)
     drive = plant.held_at(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
@@ -94,7 +94,7 @@ def close_sampled_loop(
         held,
         environments,
         tuple(constants),
-        # A controller that has no contacts takes them as they come.
+        # A controller without contacts of its own is in any of them.
         loss.anywhere or not all(c.contacts for c in design.controllers),
         tuple(held.points()) if points else (),
     )
@@ -105,7 +105,7 @@ def close_sampled_loop(
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if drive.speed is not None:
-        # It jumps after the sample, and the force of what is damped with it.
+        # The velocity jumps after the sample, and with it a damped force.
         damped = any(environment.load[1].high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
@@ -178,7 +178,7 @@ def _resets(
 
 
 def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:
-    """Return which modes may be in force: some begin a round, or are those in time."""
+    """Return the clock of rounds, or of missed deadlines."""
     begins = tuple(item.name for item in items if item.begins)
     if sampling.misses is not None:
         return clock_of(automaton_of(*sampling.misses.window), begins)
@@ -235,7 +235,7 @@ def _motor_command(
     end = n + len(INPUTS)
     bounds = {channel.name: channel.bound for channel in channels}
     shares = list(zip(form[end:], sample.sizes, strict=True))
-    # What the disturbances of a sample add to its command at once, at most.
+    # Largest change of the command by disturbances of its own sample.
     inputs = [(ONE, form[n:end]), *((abs(c), size[n:end]) for c, size in shares)]
     at_once = sum((c * _largest(row, bounds) for c, row in inputs), ZERO)
     rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from nrs_design.api.decision import Decision
+from nrs_design.api.exact import exact_matrix, read_matrix, read_number, read_rows, time_of
 from nrs_design.api.lyapunov import LyapunovCheck, check_quadratic
+from nrs_design.api.matrix_spec import name_modes, spec_of_matrices
 from nrs_design.api.study import Study
-from nrs_design.arrays.exact import exact_matrix, read_matrix, read_number, read_rows, time_of
-from nrs_design.arrays.system import name_modes, spec_of_matrices
 from nrs_design.errors import NrsDesignError
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix

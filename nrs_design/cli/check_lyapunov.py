@@ -35,7 +35,7 @@ def check_lyapunov(
     Example: nrs-design check-lyapunov docs/examples/lyapunov.json
     """
     from nrs_design.api.matrices import check_lyapunov as check
-    from nrs_design.arrays.files import read_proposal
+    from nrs_design.api.proposal import read_proposal
 
     sys.set_int_max_str_digits(MAX_DIGITS)
     proposal = read_proposal(file)

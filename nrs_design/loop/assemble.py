@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import AxisType
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
     assume,
@@ -19,29 +19,31 @@ from nrs_design.loop.assumptions import (
     assume_preloads,
     assume_scale,
 )
-from nrs_design.loop.constant_parameters import (
+from nrs_design.loop.constraints import assemble_switching
+from nrs_design.loop.located import (
+    ConstantParameter,
+    LocatedMode,
+    Period,
+    Spot,
     constant_lateness,
     constants_of,
+    grouped,
+    labelled_ends,
+    spot_of,
     with_constants,
 )
-from nrs_design.loop.constraints import assemble_switching
-from nrs_design.loop.given_matrices import (
-    constant_parameters,
-    corner_modes,
-    modes_with_misses,
-    read_parameters,
-)
-from nrs_design.loop.located import AbstractLocatedMode, ConstantParameter, grouped
+from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import combine
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import FixedParameter, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.loop.shared_state import SharedState
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.build_plant import OperatingConditions
+    from nrs_design.spec import InteractionDesignSpec, ModeSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec.misses import MissesSpec
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -49,6 +51,9 @@ DECLARED = Fraction(1)
 # Points of the ranges of a sampled loop.
 ENDS, NOMINAL = "ends", "nominal"
 POINTS = (ENDS, NOMINAL)
+# Switches by a rule for misses.
+MAX_TRANSITIONS = 200_000
+ONCE = Stay(Fraction(1), Fraction(1))
 
 
 def assemble_from_text(
@@ -60,10 +65,8 @@ def assemble_from_text(
 ) -> SwitchedSystem:
     """Assemble the switched system of a spec from the gains that a certificate quotes.
 
-    This is the way of a re-check, where gains are a stranger's text, named as in `gains_of`: they
-    are read, and held against the spec. Who has the design in hand calls `assemble`, whose errors
-    these are, beside a `CertificateError` for gains that do not fit the spec. Every declared range
-    is stretched by the scale about its nominal value; 0 leaves the nominal values only.
+    A re-check reads these gains of a stranger, named as in `gains_of`, and holds them against the
+    spec. Errors are those of `assemble`, and a `CertificateError` for gains that do not fit.
     """
     if spec.kind == "switched-system":
         if gains:
@@ -82,10 +85,7 @@ def assemble_from_text(
 
 
 def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
-    """Return the system of a spec of given matrices, one mode for each corner of its boxes.
-
-    An `AssemblyError` if the scale is negative, or the rules of switching make too many switches.
-    """
+    """Return the system of a spec of given matrices, one mode for each corner of its boxes."""
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
@@ -105,6 +105,82 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     return with_constants(system, constant_parameters(parameters), items)
 
 
+def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> dict[str, Interval]:
+    """Return the parameters of a spec, their ranges scaled about the nominal values."""
+    return {
+        name: Interval(p.nominal, *p.range, p.varies).scaled(scale)
+        for name, p in spec.parameters.items()
+    }
+
+
+def constant_parameters(parameters: Mapping[str, Interval]) -> tuple[ConstantParameter, ...]:
+    """Return the parameters that are unknown but constant."""
+    return tuple(
+        ConstantParameter(
+            FixedParameter(name, interval.low, interval.high), (f"{name}-min", f"{name}-max")
+        )
+        for name, interval in parameters.items()
+        if interval.is_constant
+    )
+
+
+def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator[LocatedMode]:
+    """Yield the corners of one mode; parameters that it does not depend on make none.
+
+    An `InternalError` if the matrix halfway is not the mean of the corners.
+    """
+    own = {name: interval for name, interval in parameters.items() if name in mode.parameters}
+    others = {name: interval.nominal for name, interval in parameters.items()}
+    corners = [(labels, mode.matrix(others | at)) for labels, at in labelled_ends(own)]
+    middle = mode.matrix({name: interval.middle for name, interval in parameters.items()})
+    mean = combine(*((Fraction(1, len(corners)), [*chain(*A)]) for _, A in corners))
+    if [*chain(*middle)] != mean:
+        raise InternalError(f"mode {mode.name} is not affine in the parameters")
+    constants = constant_parameters(parameters)
+    for labels, A in corners:
+        spot = Spot.named(mode.name) + spot_of(labels, own, constants)
+        yield LocatedMode(mode.name, spot, "", Period(A))
+
+
+def modes_with_misses(
+    items: Sequence[LocatedMode], rule: MissesSpec
+) -> tuple[tuple[LocatedMode, ...], Switching]:
+    """Return the modes by the automaton state after them, and the allowed switches.
+
+    A mode is named by the state that it leads to, such as ``miss/s3``, on which the next modes
+    depend. Corners of one mode may take turns at every step. All groups but the miss are hits.
+    """
+    from nrs_design.spec.misses import automaton_of
+
+    automaton = automaton_of(*rule.window)
+    # Modes by miss and by the state after them, in the order of states.
+    reached: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
+    for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
+        corners = [item for item in items if (item.group == rule.mode) is missed]
+        for target in sorted({t for t in targets if t is not None}):
+            reached[missed, target] = tuple(
+                replace(item, spot=item.spot + Spot.named(f"s{target}")) for item in corners
+            )
+    transitions: list[tuple[str, str]] = []
+    stays: list[tuple[str, Stay]] = []
+    for (_, state), sources in reached.items():
+        following = [(False, automaton.hit[state]), (True, automaton.miss[state])]
+        after = [mode for missed, t in following if t is not None for mode in reached[missed, t]]
+        names = {mode.name for mode in after}
+        if (len(transitions) + len(sources) * len(after)) > MAX_TRANSITIONS:
+            raise AssemblyError(
+                f"the rule for misses makes more than {MAX_TRANSITIONS} switches",
+                remedy="shorten its window, or declare fewer parameters",
+                at=("misses",),
+            )
+        for source in sources:
+            transitions += ((source.name, mode.name) for mode in after if mode is not source)
+            if source.name not in names:
+                stays.append((source.name, ONCE))
+    modes = tuple(mode for corners in reached.values() for mode in corners)
+    return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(stays))
+
+
 def assemble(
     spec: InteractionDesignSpec,
     plant: Plant,
@@ -115,9 +191,8 @@ def assemble(
 ) -> SwitchedSystem:
     """Return the closed loop of an interaction design, one mode for each corner of its boxes.
 
-    Every declared range is stretched by the scale, not negative, about its nominal value. An
-    `AssemblyError` if a stiffness or a gain does not stay positive, or if the rules of switching
-    make too many switches.
+    Every declared range is stretched by the scale about its nominal value; 0 leaves that alone. An
+    `AssemblyError` if a number does not stay positive, or for too many switches.
     """
     from nrs_design.spec.build_plant import build_conditions
 
@@ -135,14 +210,16 @@ def assemble(
         constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
-    modes: Sequence[AbstractLocatedMode]
+    modes: Sequence[LocatedMode]
     if sampling is None:
-        system, modes = _assemble_continuous(conditions, plant, design, constants)
+        from nrs_design.loop.close_loop import close_loop
+
+        system, modes = close_loop(conditions, plant, design, constants)
     else:
         from nrs_design.loop.system import close_sampled_loop
 
         system, modes = close_sampled_loop(
-            conditions, sampling, plant, design, constants, points=bool(points)
+            conditions, plant, design, constants, points=bool(points)
         )
     system = with_constants(system, constants, modes)
     period = None if sampling is None else sampling.outer
@@ -170,41 +247,6 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
     outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)
     states = tuple(map(axis.named, system.states))
     return replace(system, states=states, channels=channels, outputs=outputs)
-
-
-def _assemble_continuous(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-    constants: Sequence[ConstantParameter],
-) -> tuple[SwitchedSystem, Sequence[AbstractLocatedMode]]:
-    from nrs_design.loop.close_loop import check_memory, close_loop, with_command
-
-    state, limited = state_of(conditions, plant, design), conditions.initial_force is not None
-    system, modes = close_loop(
-        conditions.name, state, conditions.switching, conditions.contact, constants, limited=limited
-    )
-    if conditions.disturbances is not None:
-        check_memory(state.environments)
-        system = with_command(system, state, conditions.disturbances, conditions.torque)
-    if limited:
-        from nrs_design.loop.saturation import with_saturation
-
-        system = with_saturation(system, conditions, plant.actuator, state)
-    return system, modes
-
-
-def state_of(
-    conditions: OperatingConditions,
-    plant: Plant,
-    design: ControllerDesign,
-) -> SharedState:
-    """Return the state that the modes of an interaction design share in continuous time."""
-    from nrs_design.loop.shared_state import shared_state
-
-    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    idle, offset = conditions.idle, conditions.offset
-    return shared_state(plant, loop, design, idle=idle, offset=offset)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -1,4 +1,4 @@
-"""Assumptions common to all loops: data, switching, contacts, ranges, mode logic."""
+"""Assumptions about data, switching, ranges and given matrices."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from fractions import Fraction
 from itertools import starmap
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import AxisType
 from nrs_design.models.interval import Interval
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.switching import Switching
@@ -16,17 +15,14 @@ from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.units import THESIS_COMMAND
 
 if TYPE_CHECKING:
-    from nrs_design.controllers.controller_design import ControllerDesign
-    from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
     from nrs_design.spec.build_plant import Preload
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
 assume = Assumption.create
-UNCOUPLED = assume("uncoupled.axes")
 GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", which="one"))
-_COMMAND = "command-unit.unit"
+COMMAND_UNIT = "command-unit.unit"
 # Sentence ids: for one mode or controller, and for every one.
 _STAYS = {
     "dwell_time": ("rules.stays", "rules.all-stay"),
@@ -104,65 +100,14 @@ def _time_text(dwell: DwellTime) -> str:
     return f"{exact_text(dwell.value)} {unit}"
 
 
-def assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:
-    """Yield the environments that each controller may contact."""
-    for c in design.controllers:
-        if c.contacts:
-            yield assume("contacts.controller", controller=c.name, contacts=tuple(c.contacts))
-
-
-def assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
-    """Yield the assumptions about environments in simultaneous contact."""
-    for e in environments:
-        if e.parts:
-            how = "contacts.one-side" if e.each_losable else "contacts.at-once"
-            yield assume(how, environment=e.name, parts=tuple(part.name for part in e.parts))
-
-
-def assume_tissue(
-    environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
-) -> Iterator[Assumption]:
-    """Yield the parameter ranges of the environments."""
-    yield assume(
-        name,
-        ranges=tuple(
-            f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
-            for e in environments
-            for (symbol, interval), unit in zip(
-                e.parameters.items(), e.law.units(rotational=True), strict=True
-            )
-        ),
-    )
-
-
-def assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
-    """Yield the assumption of each control law about contact.
-
-    `alone`: all controllers give the motion loop the same kind of command.
-    """
-    from nrs_design.controllers.laws import LAWS
-
-    used = {controller.law.name for controller in design.controllers}
-    laws = [law for name, law in LAWS.items() if name in used]
-    # Among velocity commands alone there is no mode of free motion.
-    ids = ("never" if alone and a.commands == "velocity" else a.contact_kept for a in laws)
-    yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
-
-
 def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
     """Return the scale of the ranges, if it is not 1."""
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
-def assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
-    """Yield the unit of the motor command, if it is not rpm."""
-    if command != THESIS_COMMAND:
-        yield assume(_COMMAND, unit=command, per=axis.unit("rad"))
-
-
 def command_in(granted: Iterable[Assumption]) -> str:
     """Return the unit of the motor command that the assumptions state; rpm by default."""
-    units = (dict(item.fields).get("unit", ()) for item in granted if item.id == _COMMAND)
+    units = (dict(item.fields).get("unit", ()) for item in granted if item.id == COMMAND_UNIT)
     return next((unit for stated in units for unit in stated), THESIS_COMMAND)
 
 

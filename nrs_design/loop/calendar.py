@@ -40,8 +40,7 @@ class CommandTiming:
     """Delays of commands; the newest command that has arrived is in force.
 
     The command of the sample at time t takes effect between ``t + earliest`` and ``t + latest``,
-    each at a time of its own. Ages of commands count from the sample at which a period begins: that
-    of age 0 is computed at it.
+    each at a time of its own. A command of age 0 is computed at the begin of the period.
     """
 
     period: Fraction  # From sample to sample in s
@@ -83,10 +82,7 @@ class CommandTiming:
         return range(self.oldest - 1, self.newest - 1, -1)
 
     def points(self) -> Iterator[tuple[tuple[str, ...], CommandTiming]]:
-        """Yield times that are attained at every sample, with the label of each.
-
-        Where each sample has its own time, one is followed by the other.
-        """
+        """Yield times that are attained at every sample, with the label of each."""
         if not self.varies:
             yield (), self
         elif len(self.within) == 1 and not self.jitter:
@@ -97,11 +93,7 @@ class CommandTiming:
             yield (), replace(self, at=self.latest)
 
     def left(self, age: int) -> Interval:
-        """Return how long before the end of a period commands of an age or newer are in force.
-
-        Where none of them takes effect in a period, that is no time. The ends, in s, are not
-        negative, nor above the longest period.
-        """
+        """Return the time in s, from 0 to a period, left of it with commands of an age or newer."""
         if self.at is not None:
             begin = min(max(self.at - age * self.period, ZERO), self.period)
             return Interval.point(self.period - begin)
@@ -118,7 +110,7 @@ class Calendar:
 
     timing: CommandTiming
     ages: tuple[int, int] = (0, 0)  # Smallest and largest age of force samples
-    turns: tuple[Turn, ...] = (Turn.BOTH,)  # Of a round
+    turns: tuple[Turn, ...] = (Turn.BOTH,)  # The tasks of a round
 
     @property
     def sent(self) -> tuple[str, ...]:

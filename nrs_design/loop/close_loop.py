@@ -1,10 +1,9 @@
 """Close the loop around every contact: the modes of one robot axis, in one state.
 
-One mode for each controller and each corner of the box of the parameters of each environment that
-it may touch. Every entry of A is affine in stiffness and in damping (or in one over it, as the law
-of the environment says), and where the motor has ranges in its gain and in one over its time
-constant, each for itself, so A is a convex combination of the corners in the whole box, and what
-decreases in the corners decreases there, however fast the parameters move.
+There is a mode for each controller and each corner of the parameters of motor and environment.
+Every entry of A is affine in each of them, or in one over it. So A is a convex combination of the
+corners in the whole box, and a function that decreases in the corners decreases there, however fast
+the parameters move.
 """
 
 from __future__ import annotations
@@ -15,91 +14,138 @@ from fractions import Fraction
 from functools import partial
 from itertools import permutations, product
 
-from nrs_design.controllers.controller_design import Controller
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.constraints import assemble_switching, leaving_impedance, zeroing
-from nrs_design.loop.continuous_assumptions import assume_loop
 from nrs_design.loop.free_motion import (
-    adds_free_motion,
+    Loss,
+    could_pull,
     flights_of,
-    free_modes,
-    lost_contact,
+    force_rows,
+    lost_on_surface,
     outputs_of,
-    pulls_of,
 )
 from nrs_design.loop.located import (
     ConstantParameter,
-    MatrixMode,
+    LocatedMode,
+    Period,
     Spot,
     enclosures_of,
     grouped,
     spot_of,
 )
-from nrs_design.loop.shared_state import SharedState
+from nrs_design.loop.loop_assumptions import assume_loop
+from nrs_design.loop.saturation import with_saturation
+from nrs_design.loop.shared_state import SharedState, shared_state
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.linear_form import coordinates
+from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
+from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import ZERO, coordinates
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import SwitchingSpec
-from nrs_design.spec.build_plant import Bounds
+from nrs_design.spec.build_plant import Bounds, OperatingConditions
+from nrs_design.spec.interaction_parts import FREE
+
+# Free motion, as an environment without force.
+AIR = Environment(FREE, KelvinVoigt, (Interval.point(ZERO), Interval.point(ZERO)))
 
 
 def close_loop(
-    name: str,
-    state: SharedState,
-    rules: SwitchingSpec | None = None,
-    contact: str | None = None,
+    conditions: OperatingConditions,
+    plant: Plant,
+    design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
-    *,
-    limited: bool = False,
-) -> tuple[SwitchedSystem, Sequence[MatrixMode]]:
-    """Assemble every mode of an interaction design.
-
-    Without rules any controller may follow any other at any time. Contact, losable or kept, may by
-    default be lost where that is modelled, and a statement says whether it covers it. `limited`:
-    some statement is about signals that saturate. An `AssemblyError` if contact may be lost, and
-    that is not modelled.
-    """
-    rules, controllers = rules or SwitchingSpec(), state.design.controllers
-    sprung = any(controller.law.spring for controller in controllers)
-    free = sprung and adds_free_motion(state, contact, rules)
-    losable = None if sprung or contact == "kept" else lost_contact(state, contact)
-    items: list[MatrixMode] = []
+) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
+    """Return the system of a loop in continuous time, and its modes."""
+    state, limited = shared_state(conditions, plant, design), conditions.initial_force is not None
+    rules = conditions.switching
+    loss = _loss_of(state, conditions.contact, rules)
+    items: list[LocatedMode] = []
+    free: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
-    for c in controllers:
-        own = [*_in_contact(c, state, constants, by_contact=rules.names_contacts)]
-        own += free_modes(c, state, constants) if free else ()
+    for c in design.controllers:
+        own = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
+        air = [*_modes(c, state, [AIR], constants)] if loss is not Loss.NEVER else []
+        own += air if loss.anywhere else ()
+        free += air
         groups[c.name] = dict.fromkeys(item.group for item in own)
         items += own
-    pulls = tuple(pulls_of(state)) if free else ()
+    losable, velocity = loss is Loss.SURFACE, state.motion.output(len(state.names))
+    pulling = could_pull(state.environments) if free else ()
+    pulls = tuple(force_rows(velocity, state.names, pulling))
     system = SwitchedSystem(
-        name=name,
+        name=conditions.name,
         time=Time.CONTINUOUS,
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=tuple(
-            assume_loop(state, rules, losable=losable is not None, free=free, limited=limited)
+            assume_loop(state, rules, losable=losable, free=loss.anywhere, limited=limited)
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
-        contact=losable,
-        flights=flights_of(items, state.environments, pulls) if free else None,
+        contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
+        if losable
+        else None,
+        flights=flights_of(items, state.environments, pulls) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
-    return system, items
+    if conditions.disturbances is not None:
+        _check_memory(state.environments)
+        system = with_command(system, state, conditions.disturbances, conditions.torque)
+    return with_saturation(system, conditions, plant.actuator, state) if limited else system, items
+
+
+def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> Loss:
+    """Return how contact is lost, by the key `contact` of a spec; by default, where it is modelled.
+
+    With springs, free motion ends at rest in one place, and is a mode on demand only: that contact
+    is lost at any deflection is more than happens.
+    """
+    environments, sprung = (
+        state.environments,
+        {bool(c.law.spring) for c in state.design.controllers},
+    )
+    loss = Loss.of(contact, environments, state.design, slowed=False)
+    modelled = (
+        loss in (Loss.ANYWHERE, Loss.SURFACE)
+        and bool(environments)
+        and state.idle is None
+        and not any(e.law.has_mass for e in environments)
+    )
+    if contact != "losable":
+        return loss if modelled else Loss.NEVER
+    if len(sprung) > 1:
+        raise _not_losable(", where some controllers have a spring Kt, for all that have one")
+    if not modelled:
+        raise _not_losable("")
+    if loss.anywhere and (rules.names_contacts or next(rules.dwell_times(), None) is not None):
+        raise AssemblyError(
+            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
+            "is lost whatever the rules of switching say",
+            remedy="use `contact: kept`, or rules with transitions between controllers alone",
+            at=("switching",),
+        )
+    return loss
+
+
+def _not_losable(which: str) -> AssemblyError:
+    return AssemblyError(
+        "loss of contact is modelled for impedance controllers on elastic and damped environments"
+        f"{which}",
+        remedy="use `contact: kept`",
+        at=("contact",),
+    )
 
 
 def _resets(
     state: SharedState, groups: Mapping[str, Iterable[str]]
 ) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield the switches that set states to zero, and the maps, by the groups of a controller.
-
-    From an impedance controller to others the idle states are, if the spec says so; where force
-    control takes the measured position, the lead is.
-    """
+    """Yield the switches at which idle states become zero, or the lead of a measured position."""
     controllers = state.design.controllers
     switches: Iterable[tuple[str, str]] = ()
     if state.offset == "measured":
@@ -112,32 +158,35 @@ def _resets(
         yield from ((*pair, map_) for pair in product(groups[source], groups[target]))
 
 
-def _in_contact(
-    controller: Controller,
-    state: SharedState,
-    constants: Sequence[ConstantParameter],
-    *,
-    by_contact: bool,
-) -> Iterator[MatrixMode]:
-    """Yield the modes of a controller in all its contacts, or in none if it takes no force."""
+def _touched(c: Controller, state: SharedState) -> Sequence[Environment | None]:
+    """Return the contacts of a controller; None, and all that it feels, if it takes no force."""
     by_name = {environment.name: environment for environment in state.environments}
-    touched: list[Environment | None] = [by_name[name] for name in controller.contacts]
-    if not touched:
-        # A law without force feedback has the same mode in every contact, unless the plant differs.
-        touched = [None, *(state.environments if state.feels else ())]
+    feels = state.environments if state.feels else ()
+    return [by_name[name] for name in c.contacts] or [None, *feels]
+
+
+def _modes(
+    c: Controller,
+    state: SharedState,
+    touched: Iterable[Environment | None],
+    constants: Sequence[ConstantParameter] = (),
+    *,
+    by_contact: bool = False,
+) -> Iterator[LocatedMode]:
+    """Yield the modes of a controller in some contacts, at every corner of contact and motor."""
     for e in touched:
         where = () if e is None else (e.name,)
-        name = "/".join((controller.name, *where))
-        box, known = state.contact_box(e).beside(state.motor_box), (None, *where)
+        name, known = "/".join((c.name, *where)), (None, *where)
+        box = state.contact_box(e).beside(state.motor_box)
         # Dependent stiffness and damping do not attain every corner.
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
         own = [constant for constant in constants if constant.contact in known]
-        for labels, rows in box.corners(partial(state.rows, controller.law, e), name):
-            yield MatrixMode(
-                name if by_contact else controller.name,
-                Spot.named(controller.name, *where) + spot_of(labels, real, own),
-                "" if e is None else e.name,
-                RationalMatrix.from_rows(rows),
+        for labels, rows in box.corners(partial(state.rows, c.law, e), name):
+            yield LocatedMode(
+                name if by_contact else c.name,
+                Spot.named(c.name, *where) + spot_of(labels, real, own),
+                "".join(where),
+                Period(rows),
             )
 
 
@@ -146,9 +195,8 @@ def with_command(
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
 
-    The command goes where the velocity of the admittance is subtracted, into the motion loop, in
-    contact and free alike. `torque` is the limit of the contact force about the pivot, in N m. An
-    `AssemblyError` if it is not modelled for these controllers or environments.
+    The command enters the motion loop, where the velocity of the admittance is subtracted. `torque`
+    is the limit of the contact force about the pivot, in N m.
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
@@ -166,8 +214,7 @@ def with_command(
             at=("controllers", sprung, "Kt"),
         )
     ((name, (bound, unit)),) = disturbances.items()
-    free = () if system.contact is None else system.contact.free
-    columns = tuple(_column(mode, state.motion) for mode in (*system.modes, *free))
+    columns = tuple(_column(mode, state.motion) for mode in system.every_mode)
     velocity = state.motion.output(system.order)
     return replace(
         system,
@@ -177,7 +224,7 @@ def with_command(
     )
 
 
-def check_memory(environments: Sequence[Environment]) -> None:
+def _check_memory(environments: Sequence[Environment]) -> None:
     """Refuse tissue that creeps, for which no bound under a command is stated."""
     if any(environment.law.remembers for environment in environments):
         raise AssemblyError(

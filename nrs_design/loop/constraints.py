@@ -34,22 +34,23 @@ T = TypeVar("T")
 
 
 def assemble_switching(
-    rules: SwitchingSpec,
-    groups: Groups,
-    resets: Iterable[Jump] = (),
+    rules: SwitchingSpec, groups: Groups, resets: Iterable[Jump] = ()
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes, which are grouped by its names.
 
-    Corners and contacts of one name follow each other freely, because parameters and environment
-    move as they like. Switches between names are allowed, and reset, for all their corners. An
-    `AssemblyError` if the rules become too many.
+    Corners and contacts of one name follow each other freely: parameters and environment move at
+    will. Switches between names are allowed, and reset, for all their corners.
     """
     common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
     if rules.transitions is not None:
         within = ((name, name) for name in groups)
         transitions = _limited(_expand(chain(within, rules.transitions), groups))
-    jumps = _limited(_assembled_resets(resets, groups))
+    jumps = _limited(
+        Reset(*pair, matrix)
+        for source, target, matrix in resets
+        for pair in _expand([(source, target)], groups)
+    )
     stays = tuple(_assembled_stays(rules, groups, Stay(common)))
     return Switching(common, transitions, jumps, stays=stays)
 
@@ -81,12 +82,6 @@ def _assembled_stays(
             yield from ((mode, stay) for mode in modes)
 
 
-def _assembled_resets(resets: Iterable[Jump], groups: Groups) -> Iterator[Reset]:
-    for before, after, matrix in resets:
-        for source, target in _expand([(before, after)], groups):
-            yield Reset(source, target, matrix)
-
-
 def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]:
     for source, target in pairs:
         for a, b in product(groups[source], groups[target]):
@@ -115,14 +110,14 @@ def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
 def count_stays(
     rules: SwitchingSpec, modes: Groups, period: Fraction
 ) -> tuple[Clock | None, SwitchingSpec, tuple[Assumption, ...]]:
-    """Count stays in samples: return the clock, the rules that it does not hold, and what it says.
+    """Count stays in samples: return the clock, the remaining rules, and the assumptions.
 
     There is no clock where dwell times forbid nothing. `modes` are those of each controller, in
-    contact and free, and follow each other freely; the period is the longest from sample to
-    sample, in s. A state is how many samples a controller has been in force, up to its dwell time.
-    An `AssemblyError` if there are too many of them.
+    contact and free; the period is the longest one, in s. A state of the clock is the number of
+    samples that a controller has been in force, up to its dwell time.
     """
-    names, counts = [*modes], [_count_samples(rules, name, period) for name in modes]
+    names, shortest = [*modes], [rules.stay(name)[0] for name in modes]
+    counts = [1 if stay is None else max(ceil(stay.value / period), 1) for stay in shortest]
     if len(names) < 2 or max(counts) == 1:
         none = {"dwell_time": None, "longest_dwell_time": None}
         return None, rules.model_copy(update=none), ()
@@ -138,7 +133,7 @@ def count_stays(
     allowed = None if rules.transitions is None else frozenset(rules.transitions)
 
     def leads(k: int, spent: int) -> tuple[int, ...]:
-        """Return where each controller leads after so many samples of one."""
+        """Return the next state for each controller, after `spent` samples of the k-th one."""
         last = counts[k] - 1
         to = [NOWHERE] * len(names)
         if spent == last:
@@ -153,11 +148,3 @@ def count_stays(
     clock = Clock(len(ahead), own, ahead, tuple(more[:-1]))
     each = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
     return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=each),)
-
-
-def _count_samples(rules: SwitchingSpec, name: str, period: Fraction) -> int:
-    """Return how many samples a stay of a controller has at least."""
-    shortest, _ = rules.stay(name)
-    if shortest is None:
-        return 1
-    return max(ceil(shortest.value / period), 1)

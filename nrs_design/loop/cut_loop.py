@@ -1,28 +1,26 @@
 """The loop of one controller in one contact, cut where its law takes the force.
 
-Where a spring draws the measured position, it is cut there, too: both enter the law at one place.
+A spring that draws the measured position enters the law at the same place, and is cut there, too.
 
-With the share g of the force that reaches the law, the characteristic polynomial of an assembled
-mode is ``D + g N``: the force enters the law at one place, so its determinant is affine in g. D
-is that of the mode with ``g = 0``, ``D + N`` that of the mode which is proved, and ``L = N/D`` the
-open loop, whatever is in it. Exact; in continuous time polynomials in s, sampled in
-``w = (2/T) (z - 1)/(z + 1)``, which is on the imaginary axis where z is on the unit circle: at
-``(2/T) tan(omega T/2)``, near omega while that is small.
+With the share g of the force that reaches the law, the characteristic polynomial of a mode is ``D +
+g N``: the force enters at one place, so the determinant is affine in g. D is that of ``g = 0``, ``D
++ N`` that of the proved mode, and ``L = N/D`` the open loop. All is exact; polynomials are in s, or
+sampled in ``w = (2/T) (z - 1)/(z + 1)``, which is ``(2/T) tan(omega T/2)`` on the imaginary axis
+where z is on the unit circle: near omega while that is small.
 
 The determinant is also affine in the stiffness of the contact and, times Mt in continuous time, in
-Mt, Bt and Kt; sampled in the coefficients a and b of the law. So a few modes give those of all
-gains.
+Mt, Bt and Kt; sampled in the coefficients a and b. So a few modes give those of all gains.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import product
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
@@ -36,30 +34,32 @@ from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.calendar import Calendar, CommandTiming, Turn
 from nrs_design.loop.flow import HeldDrive
-from nrs_design.loop.modes import ForceShare, position_mode, velocity_mode
+from nrs_design.loop.hull import fraction, rational
+from nrs_design.loop.located import labelled_ends
+from nrs_design.loop.modes import WHOLE, ForceShare, Rows, position_mode, velocity_mode
 from nrs_design.loop.parameter_box import Joint
 from nrs_design.loop.program import SampledProgram
-from nrs_design.loop.sampled import NOTHING, Contact, Rows, SampledLoop
+from nrs_design.loop.sampled import NOTHING, Contact, SampledLoop
+from nrs_design.loop.sampled import Rows as Flow
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
 from nrs_design.models.interval import Interval
-from nrs_design.models.linear_form import LinearForm
+from nrs_design.models.linear_form import ZERO, LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.matrix import multiply as multiply_matrices
+from nrs_design.proof.matrix import multiply
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 
 Polynomial = tuple[Fraction, ...]
-ZERO, ONE = Fraction(0), Fraction(1)
 # Decay and driving rate of the memory of a contact; None without memory.
 Memory: TypeAlias = tuple[Fraction, Fraction] | None
 REMEMBERED = "damper deflection [rad]"
 _KEPT = 512
-# Shares of the force that reach the law and a motor with a load.
-_CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
+# Shares of the force in the loops of `CutLoop`, in its order.
+_OPENED, _FREE = ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
+_CUTS = _OPENED, WHOLE, _FREE
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,20 +72,24 @@ class Place:
     texts: tuple[str, ...] = ()  # Deviations from nominal; the age if there are several
 
 
-@dataclass(frozen=True, slots=True)
-class CutLoop:
+class CutLoop(NamedTuple):
     """Characteristic polynomials of one mode, highest power first, of one length."""
 
     opened: Polynomial  # Without force feedback to the law; the load of a motor remains
-    closed: Polynomial  # Of the closed loop
+    closed: Polynomial  # The closed loop
     free: Polynomial  # Where the force does not act at all
+
+
+# Three admittances, in the two coordinates in which all polynomials are affine. Neither zero nor
+# one, with which a law has fewer operations.
+COORDINATES = ((Fraction(2), Fraction(2)), (Fraction(3), Fraction(2)), (Fraction(2), Fraction(3)))
 
 
 @dataclass(frozen=True, slots=True)
 class AbstractAxis(ABC):
     """One axis, from which the modes of each of its controllers follow."""
 
-    places: tuple[Place, ...]
+    places: tuple[Place, ...]  # The nominal motor first, at the youngest force sample
 
     @property
     @abstractmethod
@@ -93,43 +97,42 @@ class AbstractAxis(ABC):
         """Time between two force samples in s; None in continuous time."""
 
     @abstractmethod
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller at fixed parameters of the contact and a place."""
+    def rows(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+    ) -> Rows:
+        """Return a mode, or step, of this controller and contact under a share of the force."""
 
     @abstractmethod
-    def modes(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
-    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Return the mode without the force in the law, and the one that is proved.
-
-        They differ by one column times one row; sampled, they are steps.
-        """
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        """Return the loop whose modes at the shares of `_CUTS` are given."""
 
     @abstractmethod
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
-    ) -> tuple[CutLoop, CutLoop, CutLoop]:
-        """Return the loops of three admittances, at (2, 2), (3, 2) and (2, 3) in two coordinates.
+    ) -> list[CutLoop]:
+        """Return the loops of the three admittances of `COORDINATES`.
 
-        They are Mt and Bt, and the polynomials are times Mt; sampled, they are a and b, and without
-        inertia there is no a. All polynomials are affine in both. The spring Kt is in N m/rad; zero
-        is none.
+        In continuous time these are Mt and Bt, and the polynomials are times Mt; sampled, they are
+        a and b, and without inertia there is no a. The spring Kt is in N m/rad; zero is none.
         """
 
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller at fixed parameters of the contact and a place."""
+        return self._loop(self.rows(law, contact, place, cut) for cut in _CUTS)
 
-# Neither zero nor one, with which a law has fewer operations.
-COORDINATES = ((Fraction(2), Fraction(2)), (Fraction(3), Fraction(2)), (Fraction(2), Fraction(3)))
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Rows, Rows]:
+        """Return the mode without force in the law, and the proved one: one rank apart."""
+        return self.rows(law, contact, place, _OPENED), self.rows(law, contact, place)
 
 
 @dataclass(frozen=True, slots=True)
 class ContinuousAxis(AbstractAxis):
-    """An axis whose law is never sampled; the nominal place is the first one.
-
-    `joint` is the motor in its physical state, where it has ranges or a load.
-    """
+    """An axis whose law is never sampled."""
 
     realization: Realization
-    joint: Joint | None = None
+    joint: Joint | None = None  # The motor in its physical state, where it has ranges or a load
     low_pass: LowPass | None = None
 
     @property
@@ -143,48 +146,32 @@ class ContinuousAxis(AbstractAxis):
             return self.realization
         return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
 
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller."""
-        cuts = _OPENED, _CLOSED, _FREE
-        return CutLoop(*(characteristic(self.rows(law, contact, place, cut)) for cut in cuts))
-
-    def modes(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
-    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Return the mode without the force in the law, and the one that is proved."""
-        return self.rows(law, contact, place, _OPENED), self.rows(law, contact, place)
-
     def rows(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
-    ) -> list[LinearForm]:
-        """Return a mode, of the states of this controller and contact alone.
-
-        `cut` is how much of the force acts.
-        """
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+    ) -> Rows:
+        """Return a mode."""
         motion = self.motion_at(place.motor)
         if law.commands == "position":
             placed = motion if isinstance(motion, Realization) else motion.placed
             return position_mode(placed, law, contact, self.low_pass, cut=cut)
         return velocity_mode(motion, law, contact, self.low_pass, cut)
 
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        return CutLoop(*map(characteristic, modes))
+
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
-    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+    ) -> list[CutLoop]:
         """Return the loops of three admittances; without inertia is a limit of the same."""
-        first, second, third = (
-            _times(Mt, self.cut(Admittance(Mt, Bt, spring), contact, place))
-            for Mt, Bt in COORDINATES
-        )
-        return first, second, third
+        return [
+            CutLoop(*(tuple(law.Mt * c for c in p) for p in self.cut(law, contact, place)))
+            for law in (Admittance(Mt, Bt, spring) for Mt, Bt in COORDINATES)
+        ]
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessorAxis(AbstractAxis):
-    """An axis whose law a processor computes.
-
-    The first place is the nominal motor at the youngest force sample. `takes` and `drive` are there
-    where the robot takes no commands of a motor, and no motor moves its joint.
-    """
+    """An axis whose law a processor computes; `takes` is None for the commands of a motor."""
 
     motion: ProportionalDerivative
     sampling: SamplingSpec
@@ -197,62 +184,40 @@ class ProcessorAxis(AbstractAxis):
         """Time between two force samples in s."""
         return self.sampling.outer
 
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Return the loop of a controller."""
+    def rows(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+    ) -> Rows:
+        """Return the map of a period."""
         held = law.discretize(self.sampling.outer, self.sampling.admittance)
-        return self._cut(held, contact, place)
-
-    def modes(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
-    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
-        """Return the step without the force in the law, and the one that is proved."""
-        held = law.discretize(self.sampling.outer, self.sampling.admittance)
-        opened, closed, _ = _touches(contact)
-        return self.step(self._opened(held), place, *opened), self.step(held, place, *closed)
+        return self._step(held, contact, place, cut)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
-    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+    ) -> list[CutLoop]:
         """Return the loops of three admittances."""
         T = to_float32(self.sampling.outer)
-        first, second, third = (
-            self._cut(Admittance.discrete(a if inert else None, b, T, spring), contact, place)
-            for a, b in COORDINATES
-        )
-        return first, second, third
+        laws = [Admittance.discrete(a if inert else None, b, T, spring) for a, b in COORDINATES]
+        return [self._loop(self._step(law, contact, place, cut) for cut in _CUTS) for law in laws]
 
-    def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        pairs = zip((self._opened(law), law, law), _touches(contact), strict=True)
-        loops = [characteristic(self.step(own, place, *touch)) for own, touch in pairs]
+    def _loop(self, modes: Iterable[Rows]) -> CutLoop:
+        loops = [*map(characteristic, modes)]
         while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
             loops = [p[:-1] for p in loops]
         return CutLoop(*(on_the_axis(p, self.period) for p in loops))
 
-    def _opened(self, law: DiscreteLaw) -> DiscreteLaw:
-        """Return a law where it is cut: a spring that draws the measured position is cut as well.
-
-        It enters the law where the force does, so the loop is cut at the command.
-        """
-        if self.takes is not Takes.VELOCITY:
-            return law
-        return DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
-
-    def step(
-        self,
-        law: DiscreteLaw,
-        place: Place,
-        sensed: Contact,
-        carried: Contact,
-        memory: Memory = None,
-    ) -> Sequence[LinearForm]:
-        """Return the map of a period.
-
-        `sensed` is what the force sample shows, `carried` what slows a motor with a load, `memory`
-        the rates of what is touched.
-        """
-        # One place is asked for, and the hash of all takes as long as the loop.
-        alone, carried = replace(self, places=()), carried if self.drive.loaded else NOTHING
-        loop, flow = _loop(alone, law, place, carried, memory)
+    def _step(
+        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare
+    ) -> Rows:
+        """Return the map of a period in which a share of the force acts."""
+        if cut is _OPENED and self.takes is Takes.VELOCITY:
+            # A spring that draws the measured position enters the law where the force does, so it
+            # is cut as well.
+            law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
+        sensed = contact.load if cut.sensed else NOTHING
+        carried = contact.load if cut.carried and self.drive.loaded else NOTHING
+        # Hashing all places takes as long as making the loop.
+        axis = replace(self, places=())
+        loop, flow = _sampled_loop(axis, law, place, carried, contact.memory_rates)
         n = len(loop.states)
 
         def rows(turn: Turn, age: int) -> list[LinearForm]:
@@ -261,21 +226,15 @@ class ProcessorAxis(AbstractAxis):
 
         whole, between = rows(Turn.BOTH, place.age), self.sampling.round - 1
         for motion in [rows(Turn.MOTION, 0)] * between if between else ():
-            whole = [*multiply_matrices(motion, whole)]
+            whole = [*multiply(motion, whole)]
         return whole
-
-
-def _touches(contact: AbstractLinearLaw) -> tuple[tuple[Contact, Contact, Memory], ...]:
-    """Return sensed and carried contact and its memory: opened, closed, without force."""
-    touched, memory = contact.load, contact.memory_rates
-    return (NOTHING, touched, memory), (touched, touched, memory), (NOTHING, NOTHING, memory)
 
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
 @lru_cache(maxsize=_KEPT)
-def _loop(
+def _sampled_loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
-) -> tuple[SampledLoop, Rows]:
+) -> tuple[SampledLoop, Flow]:
     """Return the loop of a law, and the flow of a period at one point."""
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
@@ -288,10 +247,7 @@ def _loop(
     touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
     flow = HeldDrive(known, timing).flow(touched)[0].rows
     calendar = Calendar(timing, (place.age, place.age))
-    loop = SampledLoop(
-        SampledProgram(step, (law,)), axis.takes, known.states, known.memory, calendar
-    )
-    return loop, flow
+    return SampledLoop(SampledProgram(step, (law,)), known, calendar), flow
 
 
 def axis_of(
@@ -299,8 +255,7 @@ def axis_of(
 ) -> AbstractAxis | None:
     """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
 
-    None where the force is sampled more often than the motion loop: it then enters a round at
-    several samples, and there is no one place to cut.
+    None where the force enters a round at several samples: there is no one place to cut.
     """
     sampling, low_pass = spec.sampling, sensor.filter
     ranges = plant.actuator_ranges
@@ -319,18 +274,11 @@ def _places(
 ) -> Iterator[Place]:
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
-    # Parameters without a range have one corner.
-    numbers = (
-        ("Km", f"{unit('rad/s')}/{ranges.command}", ranges.gain),
-        ("tau", "s", ranges.time_constant),
-    )
-    for (_, gain), (_, tau) in product(*(r.ends for _, _, r in numbers)):
-        texts = tuple(
-            f"{name} = {float(value):.6g} {measured}"
-            for (name, measured, r), value in zip(numbers, (gain, tau), strict=True)
-            if r.low < r.high
-        )
-        motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
+    units = {GAIN: f"{unit('rad/s')}/{ranges.command}", "tau": "s"}
+    for labels, at in labelled_ends({GAIN: ranges.gain, "tau": ranges.time_constant}):
+        symbols = [label.partition("-")[0] for label in labels]
+        texts = tuple(f"{s} = {float(at[s]):.6g} {units[s]}" for s in symbols)
+        motors.setdefault(replace(nominal, gain=at[GAIN], time_constant=at["tau"]), texts)
     every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
     for (motor, texts), age, late in every:
         aged = () if ages[0] == ages[1] else (f"delay {age}",)
@@ -340,19 +288,10 @@ def _places(
 
 def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
     """Return ``det(s I - A)`` exactly, highest power first."""
-    from flint import fmpz_mat
+    from flint import fmpq_mat
 
-    A = RationalMatrix.from_rows(rows)
-    found = fmpz_mat([[*row] for row in A.numerators]).charpoly().coeffs()
-    n = len(found) - 1
-    return tuple(
-        Fraction(int(c), A.denominator ** (n - i)) for i, c in reversed([*enumerate(found)])
-    )
-
-
-def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
-    each = loop.opened, loop.closed, loop.free
-    return CutLoop(*(tuple(factor * c for c in polynomial) for polynomial in each))
+    found = fmpq_mat([[rational(c) for c in row] for row in rows]).charpoly().coeffs()
+    return tuple(map(fraction, reversed(found)))
 
 
 def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
@@ -360,14 +299,14 @@ def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
 
     The polynomial is in z, of degree n, highest power first; T is the period.
     """
-    from flint import fmpq, fmpq_poly
+    from flint import fmpq_poly
 
-    half = fmpq(period.numerator, 2 * period.denominator)
-    first, *others = (fmpq(c.numerator, c.denominator) for c in polynomial)
+    half = rational(period / 2)
+    first, *others = map(rational, polynomial)
     total, power = fmpq_poly([first]), fmpq_poly([1])
     rising, falling = fmpq_poly([1, half]), fmpq_poly([1, -half])
     for c in others:
         power *= falling
         total = total * rising + c * power
-    found = [Fraction(int(c.p), int(c.q)) for c in total.coeffs()]
+    found = [*map(fraction, total.coeffs())]
     return (*[ZERO] * (len(polynomial) - len(found)), *reversed(found))

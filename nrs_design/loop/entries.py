@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from flint import arb, arb_mat
 
 ONE, ZERO = Fraction(1), Fraction(0)
-# Of a period, in time constants of the drive: far beyond, nothing is left of where it began.
+# Longest period in time constants of the drive: the initial state has decayed long before.
 LONGEST = Fraction(2000)
 
 
@@ -59,10 +59,10 @@ class Entries:
     def jet(self, at: Mapping[str, Any], h: arb, by: str, width: arb, order: int) -> list[arb_mat]:
         """Return the entries and their Taylor coefficients along the range of a number.
 
-        In shares of a range of that width, from the numbers on that are given; `by` is the number,
-        or empty for the time. With ``G = G0 + t D``, the coefficients of ``exp(G h)`` are the first
-        row of blocks of the exponential of the block matrix with ``G0 h`` on the diagonal and
-        ``D h`` beside it. Those by the time are ``(width G)^k exp(G h)/k!``.
+        They are in shares of the width; `by` is the number, or empty for the time. With ``G = G0 +
+        t D``, those of ``exp(G h)`` are the first row of blocks of the exponential of the block
+        matrix with ``G0 h`` on the diagonal and ``D h`` beside it. Those by the time are ``(width
+        G)^k exp(G h)/k!``.
         """
         from flint import arb_mat
 
@@ -88,19 +88,18 @@ class Entries:
     def moved(self, at: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
         """Return bounds on the change of the entries under a load that varies within the time.
 
-        `widths` are those of the ranges of numbers of the load. Let A be the generator at the
-        moment, with entries of at most M by size, and k a number of the load, which acts by N:
-        ``A(s) = A + (k(s) - k) N`` with k the mean over the time. What the state becomes is off by
-        the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (h - s)) N E(s)``, E what the changing
-        A makes of the state until s. The first factor has the mean zero and a range of some width,
-        so that is at most ``h^2/8`` times the width and the largest derivative of g (Ostrowski
-        1970), which is at most ``exp(M h) (|N| M + M |N|) exp(M h)``. What commands add is off by
-        at most the integral of ``exp(M (h - s)) |N| exp(M s)``, which is the corner block of the
-        exponential of ``[[M, |N|], [0, M]] h``.
+        `widths` are those of the ranges of the load. Let ``A(s) = A + (k(s) - k) N`` be the
+        generator, with entries of at most M by size, k the mean of a number of the load, and E(s)
+        the transition until s. The state is off by the integral of ``(k(s) - k) g(s)`` with ``g =
+        exp(A (h - s)) N E(s)``. The first factor has the mean zero and a range of some width, so
+        that is at most ``h^2/8`` times the width and the largest derivative of g (Ostrowski 1970),
+        which is at most ``exp(M h) (|N| M + M |N|) exp(M h)``. The part of commands is off by at
+        most the integral of ``exp(M (h - s)) |N| exp(M s)``: the corner block of the exponential of
+        ``[[M, |N|], [0, M]] h``.
         """
         from flint import arb_mat
 
-        # A velocity that jumps would have a row of its own; what remembers does not act on it.
+        # A velocity that jumps would have a row of its own; a memory does not act on it.
         assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
         M, total = _sizes(self.rates(at)), arb_mat(m, m)

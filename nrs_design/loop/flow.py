@@ -1,12 +1,12 @@
 """Flow of a drive over a period under held commands: an enclosure by few points.
 
-All entries are enclosed together, as numbers have ranges (docs/certificates/drives.md):
+All entries are enclosed together, by the number of ranges (docs/certificates/drives.md):
 
 - none: entries are known but for their last digits, and a few give the others exactly;
 - one: they run through a curve, around which there is a simplex;
-- several: between the ends of the ranges is what interpolates, one number after the other, but for
-  the sum of ``(length of a range)^2/8`` times the second derivative by that number. What is touched
-  may change within a period, too, but for what is constant: its mean takes the place of a constant.
+- several: interpolation between the ends of all ranges, with an error of at most the sum of
+  ``(length of a range)^2/8`` times the second derivatives. Numbers of a contact may change within a
+  period: their mean takes the place of a constant.
 
 The gain of a motor multiplies commands, exactly.
 """
@@ -14,6 +14,7 @@ The gain of a motor multiplies commands, exactly.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
@@ -45,17 +46,17 @@ if TYPE_CHECKING:
 
 ONE, ZERO = Fraction(1), Fraction(0)
 BITS = 240
-# How labels name the load in a period where its symbols already name that of the force sample.
+# Names of the load of a period, beside those of the force sample.
 AGAIN = ("k held", "b held")
 NOTHING = Interval.point(ZERO)
 
 
 @dataclass(frozen=True, slots=True)
 class FlowPoint:
-    """One point of the hull in which all that a drive does in a period is."""
+    """One point of a hull that holds every motion of a drive in a period."""
 
-    labels: tuple[str, ...]  # At which ends of ranges it is, and which point of a simplex
-    curve: tuple[str, int] | None  # Of the only number with a range: its name, and which point
+    labels: tuple[str, ...]  # Ends of its ranges, and its number in a simplex
+    curve: tuple[str, int] | None  # The only range, and the point on its curve
     rows: Rows
 
 
@@ -69,7 +70,7 @@ class HeldDrive:
     timing: CommandTiming
 
     def points(self) -> Iterator[tuple[tuple[str, ...], HeldDrive]]:
-        """Yield drives that there are, at the ends of the ranges, with the labels of each."""
+        """Yield the drives at the ends of the ranges, with the labels of each."""
         for labels, values in labelled_ends(self.drive.ranges):
             drive = self.drive.at(values)
             for times, timing in self.timing.points():
@@ -78,12 +79,11 @@ class HeldDrive:
     def flow(
         self, touched: Mapping[str, Interval] | None = None, load: tuple[str, str] = LOAD
     ) -> tuple[FlowPoint, ...]:
-        """Return the points that enclose what the drive does in a period.
+        """Return the points that enclose the motion of the drive in a period.
 
-        `touched` are stiffness and damping by the symbols of `LOAD`; what is left out is zero. A
-        drive that is not loaded ignores them. `load` is how labels name them. A point alone need
-        not be a drive of the ranges. An `AssemblyError` if a period is so long for the ranges that
-        an entry is not enclosed.
+        `touched` are stiffness and damping by the symbols of `LOAD`, by default zero; they act on a
+        loaded drive, and labels name them as `load`. A point alone need not be a drive of the
+        ranges. An `AssemblyError` if a period is too long to enclose an entry.
         """
         with precision(BITS):
             try:
@@ -97,12 +97,11 @@ class _Number:
     """A parameter with a range: of the drive, of the contact, or a time."""
 
     symbol: str  # Empty for a time
-    name: str  # As labels say it
-    # At its least and its greatest value, in the coordinate in which rates are affine: the number,
-    # or one over it.
+    name: str  # Its name in labels
+    # Its ends, in the coordinate in which rates are affine: the number, or one over it.
     low: arb
     high: arb
-    span: int | None = None  # Of a time: which of those that are left of the period
+    span: int | None = None  # Index of a time among those left of the period
 
 
 class _Flow:
@@ -149,14 +148,14 @@ class _Flow:
         self.keys = self._keys()
         self.ties = self._ties()
 
-    # Which entries there are, and which of them others give.
+    # Entries, and ties between them.
 
     def _lasting(self) -> tuple[list[Fraction], Fraction] | None:
-        """Return the states that a lasting command of one leads to, and the speed of the joint.
+        """Return the states v that a lasting command of one leads to, and the speed w of the joint.
 
-        They are the same for all numbers: what has to be zero there is affine in each number, and
-        zero at all ends. So ``exp([[A, B], [0, 0]] T)`` maps ``(v, 1)`` to ``(v + T w, 1)``, which
-        gives the column of the command. None where there are none, or the period has a range.
+        They are the same for all numbers if their residual, which is affine in each number, is zero
+        at all ends. So ``exp([[A, B], [0, 0]] T)`` maps ``(v, 1)`` to ``(v + T w, 1)``, which gives
+        the column of the command. None without such states, or where the period has a range.
         """
         from flint import fmpq_mat
 
@@ -182,11 +181,8 @@ class _Flow:
         return found
 
     def _keys(self) -> list[Key]:
-        """Return the entries that are not zero; of later commands those of the command alone.
-
-        The position of a robot that takes positions acts as the command does, less it: it counts
-        for what remembers alone.
-        """
+        """Return the entries that are not zero; of later commands those of the command alone."""
+        # The position of a robot that takes positions acts as minus its command, but on a memory.
         n, acts = self.drive.order, self.entries.acting(self.whole)
         own = {n - 2} if self.drive.memory else set()
         first = [*range(n + 1)] if self.lasting is None else [*range(n)]
@@ -199,7 +195,7 @@ class _Flow:
         ]
 
     def _ties(self) -> dict[Key, Tie]:
-        """Return which entries others of a known drive give, over times that are known."""
+        """Return the entries of a known drive, over known times, that follow from others."""
         from flint import fmpq, fmpq_mat
 
         if any(number.symbol for number in self.numbers):
@@ -235,23 +231,18 @@ class _Flow:
                     yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, at[GAIN]))
 
     def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
-        """Yield points of entries: around a curve, or else at the ends of all ranges."""
-        # What changes within a period is on no curve. With a load, a constant needs as many corners
-        # in the air as in contact.
-        most = 0 if self.drive.loaded or self.changing else 1
-        found = self._simplex() if len(self.numbers) <= most else None
+        """Yield points of entries: around the curve of the only range, or at the ends of ranges."""
+        # Changes within a period are on no curve. With a load, a constant needs as many corners in
+        # the air as in contact.
+        most, found = 0 if self.drive.loaded or self.changing else 1, None
+        if len(self.numbers) <= most:
+            with suppress(OverflowError):
+                found = simplex(self._curves)
         for k, point in enumerate(found or ()):
             curve = (self.numbers[0].name, k) if self.numbers else None
             yield (f"flow-{k}",), curve, point
         if found is None:
             yield from self._interpolated()
-
-    def _simplex(self) -> list[Point] | None:
-        """Return the points around the curve of the only number that has a range, if any."""
-        try:
-            return simplex(self._curves)
-        except OverflowError:
-            return None
 
     def _curves(self, order: int) -> dict[Key, EntryCurve]:
         """Return the entries that no others give, as functions of the number with a range."""
@@ -272,7 +263,7 @@ class _Flow:
         return found
 
     def _interpolated(self) -> Iterator[tuple[tuple[str, ...], None, Point]]:
-        """Yield what interpolates at the ends of ranges, each beside what it is off."""
+        """Yield the interpolation at the ends of ranges, widened by its error."""
         errors: dict[Key, Fraction] = {}
         names = [n.name for n in self.numbers]
         corners = [
@@ -292,9 +283,9 @@ class _Flow:
     def _between(
         self, s: int, corners: Sequence[Mapping[str, int]]
     ) -> Iterator[tuple[Key, list[Fraction], Fraction]]:
-        """Yield the entries over one time at the ends of all numbers, and how far they are off.
+        """Yield the entries over one time at the ends of all numbers, and their largest error.
 
-        What is convex in a number is not above what interpolates, what is concave not below.
+        A convex entry is not above its interpolation, a concave one not below.
         """
         mine = [n for n in self.numbers if n.span in (None, s)]
         span, moved = self.spans[s], None
@@ -341,7 +332,7 @@ class _Flow:
         return whole
 
     def _jumped(self, labels: Sequence[str], point: Point) -> Iterator[tuple[list[str], Point]]:
-        """Yield what a point is where velocities have jumped with late commands, or have not.
+        """Yield a point with and without the jumps of velocity by late commands.
 
         A command that has not come has nothing left of the period: that is at the low end alone.
         """
@@ -354,11 +345,7 @@ class _Flow:
             yield texts, {k: ZERO if k in still else x for k, x in point.items()}
 
     def _rows(self, entries: Point, gain: Fraction) -> Rows:
-        """Return the rows of the states and of the deflection, over what acts on the drive.
-
-        These are the states, the deflection, the command in force when the period begins, and its
-        changes. A position is commanded from the deflection on.
-        """
+        """Return the rows of `Rows`; a position is commanded from the deflection on."""
         n, jumps = self.drive.order, self.drive.speed is not None
 
         def row(i: int) -> tuple[Fraction, ...]:

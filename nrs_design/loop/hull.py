@@ -15,16 +15,15 @@ if TYPE_CHECKING:
     from flint import arb, fmpq, fmpq_mat
 
 ONE, ZERO = Fraction(1), Fraction(0)
-# Of the last digit of a number, over its size: where it is known, its ends are one number in
-# doubles; where it has a range, over how far it is off at most.
+# Bits of a known number, so that its ends are one double, and of a range, relative to its error.
 KNOWN_BITS, RANGED_BITS = 64, 3
-# Of points on a curve, over its size: as few as are enough, each costs time in every proof.
+# Bits of points on a curve, relative to its size: the fewest that suffice, to make proofs fast.
 CURVE_BITS = range(20, 400, 12)
-# By which share a simplex around a curve may be wider than its points; with few digits, and at all.
+# Largest relative widening of a simplex around a curve: with few digits, and at all.
 NARROW, WIDEST = Fraction(1, 2**12), Fraction(1, 4)
-# How much of a mixture the points of known numbers are at most, which are so much further away.
+# Largest weight of the far points of known numbers.
 SHARE = Fraction(1, 2**20)
-# By how much more a tied number may be off, over its size, than those that give it.
+# Largest amplification of relative errors by a tie.
 LOOSE = 2**7
 # More curves than this are given up: few of them bend on their own, and all are nearly flat.
 MOST_BENT = 16
@@ -43,10 +42,9 @@ class EntryCurve:
 
 
 def around(point: Mapping[Key, Fraction], errors: Mapping[Key, Fraction]) -> list[Point]:
-    """Return the points of a simplex that holds the box of what numbers may be off.
+    """Return the points of a simplex that holds a box of errors.
 
-    With n numbers that may be off: all of them at their low ends, and each of them alone n times
-    as far as its high end.
+    Of n uncertain numbers: all at their low ends, and each alone n times as far as its high end.
     """
     low = {key: value - errors[key] for key, value in point.items()}
     wide = [key for key, error in errors.items() if error]
@@ -69,9 +67,8 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
     """Return points around curves that are run through together; None if too flat or too many.
 
     `curves_of` returns them for an order. The Bezier points of polynomials of degree m, with m
-    curves, are a simplex that holds these polynomials. It is widened by what the curves are off,
-    and by digits. Numbers that are known but for their digits have a point of their own each, far
-    beyond.
+    curves, are a simplex that holds these polynomials. It is widened by the errors of the curves
+    and of digits. Each number without a curve has a point of its own, far beyond.
     """
     bent = [key for key, curve in curves_of(0).items() if not bool(curve.far == 0)]
     if len(bent) > MOST_BENT:
@@ -103,9 +100,7 @@ def _widened(
     still: Mapping[Key, Fraction],
     errors: Mapping[Key, Fraction],
 ) -> tuple[Fraction, list[Point]] | None:
-    """Return by which share a simplex that holds all near another is wider, and its points.
-
-    None where the other one is flat.
+    """Return the points of a wider simplex, and by which share it is wider; None for a flat one.
 
     A point off by e has weights of at least -w at its corners, by the inverse of their matrix. In
     the simplex whose corners are ``(1 + sum w) p_i - sum w_j p_j`` they are not negative. A far
@@ -175,12 +170,9 @@ class Tie:
 
 
 def ties(
-    G: fmpq_mat,
-    h: Fraction,
-    entry: Callable[[fmpq_mat, Key], fmpq],
-    sizes: Mapping[Key, Fraction],
+    G: fmpq_mat, h: Fraction, entry: Callable[[fmpq_mat, Key], fmpq], sizes: Mapping[Key, Fraction]
 ) -> dict[Key, Tie]:
-    """Return which entries of ``exp(G h)`` a few others give exactly, at known G and h.
+    """Return the entries of ``exp(G h)`` that a few others give exactly, at known G and h.
 
     With m rows, the exponential is its Taylor polynomial of degree m - 1 and a mixture of m powers
     of G from the m-th on (Cayley and Hamilton): as many entries give it as these powers differ in.
@@ -220,12 +212,12 @@ def _power(size: Fraction, bits: int) -> Fraction:
 
 
 def rational(x: Fraction) -> fmpq:
-    """Return a fraction as a rational number of flint."""
+    """Return a rational number of flint."""
     from flint import fmpq
 
     return fmpq(x.numerator, x.denominator)
 
 
 def fraction(x: fmpq) -> Fraction:
-    """Return a rational number of flint as a fraction."""
+    """Return a fraction of Python."""
     return Fraction(int(x.p), int(x.q))

@@ -1,18 +1,25 @@
-"""Modes, and where in the ranges of a loop they stand."""
+"""Modes, their place in the ranges of a loop, and parameters that are unknown but constant."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from math import prod
 from typing import NamedTuple
 
+from nrs_design.errors import AssemblyError, InternalError
+from nrs_design.models.drive import GAIN
 from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
+from nrs_design.proof.system import SwitchedSystem
+
+MAX_CORNERS = 50_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +38,7 @@ class ConstantParameter:
 
 
 class Label(NamedTuple):
-    """At which end of a range a mode is, as its name says."""
+    """End of a range, as the name of a mode says it."""
 
     text: str
     attained: bool  # Whether a loop of the spec is at that end, rather than near it
@@ -40,15 +47,15 @@ class Label(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """Where in its ranges something is."""
+    """Place of a mode in its ranges."""
 
     labels: tuple[Label, ...] = ()
-    # At which end each constant number is, low before high, by its name; or which curve point.
+    # End of each constant number by name, 0 for low and 1 for high; or its point on a curve.
     corner: tuple[tuple[str, int], ...] = ()
 
     @classmethod
     def named(cls, *names: str) -> Spot:
-        """Return where what has such names is, whatever its ranges are."""
+        """Return a place with these names, whatever the ranges are."""
         return cls(tuple(Label(name, attained=True, constant=False) for name in names))
 
     def __add__(self, other: Spot) -> Spot:
@@ -72,7 +79,7 @@ def spot_of(
     constants: Iterable[ConstantParameter],
     curve: tuple[str, int] | None = None,
 ) -> Spot:
-    """Return where labels say that something is; `attained` are symbols with real ends.
+    """Return the place that labels describe; `attained` are symbols with real ends.
 
     On the curve of a constant number, its corners are the points around the curve.
     """
@@ -89,19 +96,25 @@ def spot_of(
     return Spot(tuple(labels), tuple(corner))
 
 
+@dataclass(frozen=True, slots=True)
+class Period:
+    """Map of one period, or rates in 1/s: linear forms over states, inputs and roundings."""
+
+    moves: Sequence[LinearForm]  # The states after it
+    sizes: Sequence[LinearForm] = ()  # Bound on each rounding
+    command: LinearForm = ()  # Before it is cut off
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class AbstractLocatedMode(ABC):
+class LocatedMode:
     """A mode and its corner of the ranges."""
 
     group: str  # The name that rules of switching know: a controller, or what is done instead
     spot: Spot
-    # Name of the environment, or of free motion; empty if the mode is the same in all contacts
+    # Environment of the force (sample), or free motion; empty if it is the same in all contacts
     touches: str
-
-    @property
-    @abstractmethod
-    def A(self) -> RationalMatrix:
-        """Its map, or its rates in 1/s."""
+    period: Period
+    begins: bool = False  # Whether a round begins with this mode
 
     @property
     def name(self) -> str:
@@ -111,27 +124,22 @@ class AbstractLocatedMode(ABC):
     @property
     def mode(self) -> Mode:
         """The mode, as a proof is about it."""
-        return Mode(self.name, self.A)
+        moves = self.period.moves
+        rows = [row[: len(moves)] for row in moves]
+        return Mode(self.name, RationalMatrix.from_rows(rows))
 
     @property
     def varying(self) -> tuple[str, ...]:
         """Parts of its name without the ends of constant parameters."""
         return tuple(label.text for label in self.spot.labels if not label.constant)
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class MatrixMode(AbstractLocatedMode):
-    """A mode that is a matrix alone."""
-
-    matrix: RationalMatrix
-
-    @property
-    def A(self) -> RationalMatrix:
-        """The matrix."""
-        return self.matrix
+    def column(self, i: int) -> RationalMatrix:
+        """Return the column of the i-th input, or rounding after the inputs."""
+        moves = self.period.moves
+        return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
 
 
-def grouped(items: Iterable[AbstractLocatedMode]) -> dict[str, list[str]]:
+def grouped(items: Iterable[LocatedMode]) -> dict[str, list[str]]:
     """Return the names of modes by their groups."""
     groups: dict[str, list[str]] = {}
     for item in items:
@@ -139,10 +147,130 @@ def grouped(items: Iterable[AbstractLocatedMode]) -> dict[str, list[str]]:
     return groups
 
 
-def enclosures_of(items: Iterable[AbstractLocatedMode]) -> Iterator[tuple[str, ...]]:
+def enclosures_of(items: Iterable[LocatedMode]) -> Iterator[tuple[str, ...]]:
     """Yield the modes that enclose one map or motion together."""
     found: dict[tuple[str, ...], list[str]] = {}
     for item in items:
         attained = tuple(label.text for label in item.spot.labels if label.attained)
         found.setdefault(attained, []).append(item.name)
     yield from (tuple(names) for names in found.values() if len(names) > 1)
+
+
+def constant_lateness(
+    name: str, late: tuple[Fraction, Fraction], period: Fraction
+) -> ConstantParameter:
+    """Return the time from a sample to its command, in s, as a constant parameter.
+
+    One command takes effect in each period, and a mode is at an end of the time that is then left.
+    """
+    symbol = f"h{late[0] // period}"
+    said = FixedParameter(name, *late, "s", enclosed=True)
+    return ConstantParameter(said, (f"{symbol}-max", f"{symbol}-min"))
+
+
+def constants_of(
+    plant: Plant, touched: Collection[str], part: str, *, sampled: bool
+) -> Iterator[ConstantParameter]:
+    """Yield the constant parameters of a plant; `part` is the part of the spec that its drive is.
+
+    The flow of a period encloses the numbers of its drive, but for the gain of a motor, and those
+    of a load: their corners are none of their values.
+    """
+    drive = plant.held
+    contacts = [e for e in plant.environments if not e.parts and e.name in touched]
+    for symbol, interval in drive.ranges.items():
+        if interval.is_constant:
+            key, unit = _DRIVEN[symbol]
+            said = FixedParameter(
+                f"{part}.{key}",
+                interval.low,
+                interval.high,
+                unit.format(command=plant.actuator_ranges.command),
+                symbol in drive.inverse,
+                enclosed=sampled and symbol != GAIN,
+            )
+            yield ConstantParameter(said, _ends(symbol))
+    for e in contacts:
+        keys = zip(e.law.keys, e.law.parameters(), e.law.units(rotational=True), strict=True)
+        for (key, symbol, unit), interval in zip(keys, e.ranges, strict=True):
+            if not interval.is_constant:
+                continue
+            enclosed = sampled and drive.loaded
+            if enclosed and len(touched) > 1:
+                raise InternalError("the ends of constants of several contacts are not told apart")
+            said = FixedParameter(
+                f"environments.{e.name}.{key}",
+                interval.low,
+                interval.high,
+                unit,
+                symbol in e.law.inverse,
+                enclosed,
+            )
+            yield ConstantParameter(said, _ends(symbol), e.name)
+
+
+# Symbols of the parameters of a drive, with their keys in a spec and their units.
+_DRIVEN = {
+    "J": ("inertia", "kg*m^2"),
+    "B": ("friction", "N*m*s/rad"),
+    "tau": ("time_constant", "s"),
+    GAIN: ("gain", "rad/s/{command}"),
+}
+
+
+def _ends(symbol: str) -> tuple[str, str]:
+    return f"{symbol}-min", f"{symbol}-max"
+
+
+def corner_counts(
+    modes: Iterable[LocatedMode], parameters: Iterable[ConstantParameter]
+) -> list[int]:
+    """Return the number of corners of each constant parameter: two, or more around a curve."""
+    ends = [dict(mode.spot.corner) for mode in modes]
+    return [1 + max(1, *(at.get(p.said.name, 0) for at in ends)) for p in parameters]
+
+
+def constant_sets(
+    modes: Sequence[LocatedMode], parameters: Sequence[ConstantParameter]
+) -> Iterator[tuple[str, ...]]:
+    """Yield, for each mode, its copies at the corners of the constant parameters.
+
+    A mode without a parameter is the same at both of its ends. The last one turns fastest.
+    """
+    if not parameters:
+        return
+    # By the varying parts of the name, and the corner of the constants.
+    known: dict[tuple[tuple[str, ...], tuple[int | None, ...]], str] = {}
+    first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
+    for mode in modes:
+        corner = dict(mode.spot.corner)
+        ends = tuple(corner.get(parameter.said.name) for parameter in parameters)
+        known[mode.varying, ends] = mode.name
+        first[mode.varying, tuple(end is not None for end in ends)] = None
+    counts = corner_counts(modes, parameters)
+    for varying, has in first:
+        every = product(*map(range, counts))
+        keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
+        if any((varying, key) not in known for key in keys):
+            raise InternalError(f"a corner of {varying[0]} has no mode")
+        yield tuple(known[varying, key] for key in keys)
+
+
+def with_constants(
+    system: SwitchedSystem, parameters: Sequence[ConstantParameter], modes: Sequence[LocatedMode]
+) -> SwitchedSystem:
+    """Return the system, with a mode for each corner, with parameters that do not change."""
+    if not parameters:
+        return system
+    count = prod(corner_counts(modes, parameters)) * len(system.modes)
+    if count > MAX_CORNERS:
+        raise AssemblyError(
+            f"the modes at all corners of the constant parameters are up to {count}, at most "
+            f"{MAX_CORNERS} are looked at",
+            remedy="leave out `varies: false` for some of the ranges",
+        )
+    sets = tuple(constant_sets(modes, parameters))
+    said = tuple(parameter.said for parameter in parameters)
+    return replace(
+        system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=said)
+    )

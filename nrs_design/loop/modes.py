@@ -63,9 +63,8 @@ def velocity_mode(
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
-    ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law, which commands a
-    velocity, from F to u. States of the low-pass stand between those of law and contact. `cut` is
-    how much of the force acts.
+    ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u. States
+    of the low-pass stand between those of law and contact. `cut` is how much of the force acts.
     """
     own = motion.order + len(law.states)
     touch = own + (0 if low_pass is None else low_pass.order)
@@ -125,10 +124,7 @@ def with_last(rows: Rows, form: LinearForm) -> Rows:
 
 
 def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
-    """Return a mode among states that it does not use.
-
-    These decay at rates in 1/s, by their places among all.
-    """
+    """Return a mode among states that it leaves alone: by place, these decay at rates in 1/s."""
     size = len(rows) + len(rates)
     full = [zero(size) for _ in range(size)]
     places = [i for i in range(size) if i not in rates]
@@ -153,9 +149,7 @@ def position_mode(
     ``xi' = Ap xi + Bp u``, ``theta = Cp xi``, and the law from F to u. A velocity is integrated
     first, ``r' = -vm`` and ``u = r``. Where the integral w of another controller bleeds, at a rate
     in 1/s, it is in u. States are those of loop and law, r, w, the low-pass and the memory of the
-    contact. Without a contact, nothing is touched; `cut` is how much of the force acts.
-
-    An `AssemblyError` if the command depends on itself at once.
+    contact. An `AssemblyError` if the command depends on itself at once.
     """
     moves = law.commands == "velocity"
     lags = () if low_pass is None else low_pass.states

@@ -1,9 +1,7 @@
 """Boxes of physical parameters: one matrix for each corner, and the check that corners suffice.
 
 A matrix that is affine in each parameter alone (all others held) is, anywhere in the box, a
-convex combination of its corners: at ``p = (1-t) low + t high`` along one axis it is ``(1-t)``
-times that at the low end plus ``t`` times that at the high end, and so on along the other axes.
-The weights are products of such shares: not negative, with sum one, the same for all entries.
+convex combination of its corners, with weights that are products of the shares along the axes.
 """
 
 from __future__ import annotations
@@ -43,56 +41,41 @@ class Box:
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
         return Box({**self.ranges, **other.ranges}, self.inverse | other.inverse)
 
-    def middle(self, symbol: str) -> Fraction:
-        """Return the value halfway in the coordinate in which matrices are affine."""
-        interval = self.ranges[symbol]
-        if symbol not in self.inverse:
-            return interval.middle
-        return 2 / (1 / interval.low + 1 / interval.high)
-
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
         """Yield the labels and matrices of the corners, the last parameter turning fastest.
 
-        An `InternalError`, about the mode of that name, if the matrix is not affine along each
-        axis.
+        An `InternalError` if the matrix of that mode is not affine along each axis. That follows
+        from the formulas of the loop, and is computed again because a proof for the whole box rests
+        on it: on the grid of low end, middle and high end of every axis, the matrix must be the
+        mean of its two neighbors along one axis on which it is in the middle. For entries of a
+        degree of at most two in each coordinate this decides it.
         """
-        found = {at: rows_at(values) for at, values in self._grid(between=False)}
-        self._check_corners_suffice(rows_at, found, name)
-        for (labels, _), rows in zip(labelled_ends(self.ranges), found.values(), strict=True):
-            yield labels, rows
-
-    def _check_corners_suffice(
-        self, rows_at: RowsAt, corners: Mapping[tuple[str, ...], Rows], name: str
-    ) -> None:
-        """Check exactly that a matrix is affine along each axis, the others being held.
-
-        That it is, follows from the formulas of the loop. It is computed again because a proof for
-        the whole box rests on it: on all points of the grid of low end, middle and high end of
-        every axis, the matrix must be the mean of its two neighbors along one axis on which it is
-        in the middle; so it is the mean of the corners around it. For entries of a degree of at
-        most two in each coordinate this decides it.
-        """
-        known = dict(corners)
+        known: dict[tuple[str, ...], Rows] = {}
         # Neighbors are in the middle on one axis less, so they come first.
-        for at, values in sorted(self._grid(between=True), key=lambda item: item[0].count(MIDDLE)):
+        for at, values in sorted(self._grid(), key=lambda item: item[0].count(MIDDLE)):
+            known[at] = rows_at(values)
             if MIDDLE not in at:
                 continue
             i = at.index(MIDDLE)
             low, high = (known[*at[:i], end, *at[i + 1 :]] for end in ("min", "max"))
-            known[at] = rows_at(values)
             for rows in zip(known[at], low, high, strict=True):
                 # Most rows do not change at all along an axis.
                 row, x, y = map(tuple, rows)
                 if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
                     said = f"the matrix of mode {name} is not affine in each parameter"
                     raise InternalError(said)
+        corners = (corner for at, corner in known.items() if MIDDLE not in at)
+        for (labels, _), corner in zip(labelled_ends(self.ranges), corners, strict=True):
+            yield labels, corner
 
-    def _grid(self, *, between: bool) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
-        """Yield labels and values at the ends of all ranges, and halfway between two."""
+    def _grid(self) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
+        """Yield labels and values at the ends of all ranges, and halfway where they are affine."""
         axes = []
         for symbol, interval in self.ranges.items():
-            middle = [(MIDDLE, self.middle(symbol))] if between and interval.ends[1:] else []
-            axes.append([*interval.ends, *middle])
+            middle = interval.middle
+            if symbol in self.inverse:
+                middle = 2 / (1 / interval.low + 1 / interval.high)
+            axes.append([*interval.ends, *[(MIDDLE, middle)] * len(interval.ends[1:])])
         for at in product(*axes):
             values = zip(self.ranges, (value for _, value in at), strict=True)
             yield tuple(label for label, _ in at), dict(values)

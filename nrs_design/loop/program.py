@@ -1,41 +1,259 @@
-"""Program of a processor: the update of the state at a sample, and its roundings."""
+"""Program of a processor: the update of the state at a sample, and its roundings.
+
+They follow from the list of operations that ships. The types of laws in a loop say the terms of
+each result, and how often each is rounded; the numbers of the law in force say their sizes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import takewhile
+from math import ceil
+from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
-from nrs_design.controllers.step_analysis import rounding_share
-from nrs_design.controllers.step_law import StepFrame, numbers_in_force, step_parts
-from nrs_design.loop.calendar import Turn
-from nrs_design.loop.sampled_law import (
-    ERROR,
-    IDLE_REFERENCE,
-    IDLE_VELOCITY,
-    KD,
-    KEPT,
-    KP,
-    STEP,
-    ListedLaw,
-    RoundedStep,
-    kinds_of,
-    list_law,
-    second,
-    short,
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.sensor import DiscreteLowPass
+from nrs_design.controllers.step_analysis import (
+    Term,
+    counted_terms,
+    rounded_terms,
+    rounding_share,
 )
+from nrs_design.controllers.step_law import StepFrame, build_law, numbers_in_force, step_parts
+from nrs_design.errors import InternalError
+from nrs_design.loop.calendar import Turn
 from nrs_design.loop.wires import Wires
 from nrs_design.models.drive import Takes
-from nrs_design.models.linear_form import ONE, ZERO, LinearForm
+from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordinates, zero
+
+# Inputs that are not zero in the loop of a proof.
+SENSED = frozenset({"angle", "torque", "velocity_command"})
+# Any number that is neither zero nor one: a product with one of these is exact.
+ANY = Fraction(1, 2)
+# Terms of the list.
+ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
+IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
+# Terms with a rounded operand; `RoundedStep` bounds their second-order errors.
+SECOND_ORDER = frozenset({KP, KD, STEP})
+
+
+# The types of the laws of a loop, and the names of the numbers that those of a type have.
+Kinds = tuple[tuple[type[Any], tuple[str, ...]], ...]
+
+
+def kinds_of(laws: Iterable[DiscreteLaw]) -> Kinds:
+    """Return the types of laws in the order of certificates: by command, then by few numbers."""
+    found: dict[type[Any], dict[str, None]] = {}
+    for law in laws:
+        found.setdefault(law.law, {}).update(dict.fromkeys(law.numbers))
+    order = sorted(found.items(), key=lambda item: (item[0].commands != "velocity", len(item[1])))
+    return tuple((law, tuple(names)) for law, names in order)
+
+
+@dataclass(frozen=True, slots=True)
+class ListedLaw:
+    """The list of operations of some types of laws; `list_law` makes each once."""
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+    # With any numbers; its modes are the types.
+    law: StepLaw
+    # For each mode and result, the names of its terms by those of the list.
+    names: Mapping[str, Mapping[str, Mapping[str, str]]]
+    # For each mode and result, how often each of its terms is rounded, by name.
+    counts: Mapping[str, Mapping[str, Mapping[str, int]]]
+
+    @property
+    def following(self) -> dict[str, str]:
+        """The states of the loop, and the results that they have after a sample."""
+        return {v.name: self.law.following[v.name] for v in self.law.states if v.stored}
+
+    @property
+    def all_counts(self) -> dict[str, int]:
+        """Largest number of roundings of each term, in the order of the list."""
+        most: dict[str, int] = {}
+        for mode in self.counts.values():
+            for name, count in ((n, c) for terms in mode.values() for n, c in terms.items()):
+                most[name] = max(count, most.get(name, 0))
+        return most
+
+    def step(
+        self,
+        law: DiscreteLaw,
+        numbers: Mapping[str, Fraction],
+        given: Mapping[str, LinearForm],
+        rounded: Mapping[str, LinearForm],
+        shares: Mapping[str, Fraction],
+    ) -> RoundedStep:
+        """Return a sample of a law in force; inputs and states that are missing are zero."""
+        mode = law.law.name
+        nothing = zero(len(next(iter(given.values()))))
+        every = {value.name: given.get(value.name, nothing) for value in self.law.values}
+        off = {
+            result: _sum(nothing, (rounded[name] for name in terms))
+            for result, terms in self.counts[mode].items()
+        }
+        errors = {name: off[name] for name in own_results(self.law)}
+        found = rounded_terms(self.law, self.law.modes.index(mode), every, numbers, errors)
+        terms = {
+            result: tuple(replace(t, name=names.get(t.name, t.name)) for t in found[result])
+            for result, names in self.names[mode].items()
+        }
+        return RoundedStep(self.law, numbers, rounded, shares, terms, off)
+
+
+@lru_cache(maxsize=32)
+def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
+    """Write the list out, and count its roundings.
+
+    `order` is that of the filter of the force, `takes` the command of a robot without a motor of
+    ours. An `InternalError` if a term takes a rounded number, and the addition has no bound.
+    """
+    laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
+    low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
+    law = build_law(StepFrame(ANY, ANY, low_pass, takes=takes), laws, ANY)
+    *unit, mark = coordinates(len(law.values) + 1)
+    # Commands are zero in the loop of a proof; angles count from the commanded angle.
+    given: dict[str, LinearForm] = {
+        value.name: form if value.stored or value.name in SENSED else zero(len(mark))
+        for value, form in zip(law.values, unit, strict=True)
+    }
+    left_out = {law.following[value.name] for value in law.states if not value.stored}
+    every: dict[str, dict[str, dict[str, str]]] = {}
+    counts: dict[str, dict[str, dict[str, int]]] = {}
+    takes_rounded: set[str] = set()
+    for i, mode in enumerate(law.modes):
+        names, counted = every.setdefault(mode, {}), counts.setdefault(mode, {})
+        taken: set[str] = set()
+        for result, terms in counted_terms(law, i, given).items():
+            if result in left_out:
+                continue
+            # Each result has its own roundings, so their names differ.
+            names[result] = {t: f"{t} kept" if t in taken else t for t in terms}
+            counted[result] = {names[result][term]: count for term, count in terms.items()}
+            taken |= {*counted[result]}
+        marked = rounded_terms(law, i, given, errors=dict.fromkeys(own_results(law), mark))
+        takes_rounded |= {t.name for terms in marked.values() for t in terms if t.form[-1]}
+    if unknown := takes_rounded - SECOND_ORDER:
+        raise InternalError(f"the second order of {', '.join(sorted(unknown))} is not bounded")
+    return ListedLaw(law, every, counts)
+
+
+def own_results(law: StepLaw) -> Iterator[str]:
+    """Yield the results whose rounding is counted apart from that of their terms."""
+    yield from (operation.name for operation in law.operations if operation.rounding == "own")
+
+
+def _sum(first: LinearForm, forms: Iterable[LinearForm]) -> LinearForm:
+    return combine((ONE, first), *((ONE, form) for form in forms))
+
+
+# Binary digits of how large roundings are.
+SIZE_BITS = 8
+
+
+def short(size: Fraction) -> Fraction:
+    """Round away from zero to a few binary digits, so that the numbers of proofs stay short."""
+    bits = size.numerator.bit_length() - size.denominator.bit_length()
+    unit = Fraction(2) ** (bits - SIZE_BITS)
+    return ceil(abs(size) / unit) * unit * (1 if size >= 0 else -1)
+
+
+def second(name: str) -> str:
+    """Name the second-order rounding error that a term of the reference adds to the command."""
+    return f"u of {name}"
+
+
+@dataclass(frozen=True, slots=True)
+class RoundedStep:
+    """One sample of a law in force."""
+
+    law: StepLaw  # The list of operations
+    numbers: Mapping[str, Fraction]  # Its coefficients by name
+    # Rounding error of each term: the last coordinates of all forms.
+    rounded: Mapping[str, LinearForm]
+    shares: Mapping[str, Fraction]  # Bounds on these errors, relative to the terms
+    terms: Mapping[str, tuple[Term, ...]]  # Terms of each result
+    off: Mapping[str, LinearForm]  # Rounding error of each result
+
+    def result(self, name: str) -> LinearForm:
+        """Return a result with its rounding error."""
+        return _sum(self.off[name], (term.form for term in self.terms[name]))
+
+    def command(self) -> LinearForm:
+        """Return the command with its rounding errors, those of second order apart."""
+        again = (second(term.name) for term in self.terms.get("error", ()))
+        off = (self.rounded[name] for name in again if name in self.rounded)
+        return _sum(self.result(self.law.outputs["command"]), off)
+
+    def motion_sizes(self) -> dict[str, LinearForm]:
+        """Return bounds on the roundings of error and command, by their terms."""
+        shares, Kp, D = self.shares, self.numbers["Kp"], self.numbers["Kd_over_T"]
+        summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
+        read = combine(*((ONE, form) for form in summands.values()))
+        made = {term.name: self._exact(term.form) for term in self.terms[self._command]}
+        # Of a sum of two sizes, the part that is of second order counts with another term.
+        # Without damping, the command has one term.
+        off = shares.get(KD, Fraction(0))
+        more = shares[KP] * Kp * (1 + shares[ERROR]) + off * D * shares[ERROR]
+        sizes: dict[str, LinearForm] = {
+            ERROR: combine((shares[ERROR], read)),
+            KP: combine((short(more), read)),
+        }
+        for name, form in made.items():
+            if name == KD:
+                sizes[KD] = _shortened(shares[KD], D, form)
+            elif name != KP and name in shares:
+                sizes[name] = combine((shares[name], form))
+        for name in summands.keys() & shares.keys() - {ERROR}:
+            sizes[name] = combine((shares[name], summands[name]))
+            sizes[second(name)] = combine((shares[second(name)] * (Kp + D), summands[name]))
+        return sizes
+
+    def other_sizes(self) -> dict[str, LinearForm]:
+        """Return bounds on the roundings of all other results."""
+        sizes: dict[str, LinearForm] = {}
+        factors = {STEP: "T", KEPT: "a"}
+        own = {*own_results(self.law)}
+        for result in self.terms.keys() - {"error", self._command}:
+            beyond = 1 + self.shares[STEP] if result in own else ONE
+            for term in self.terms[result]:
+                if (share := self.shares.get(term.name)) is None:
+                    continue
+                form = self._exact(term.form)
+                if term.name in factors:
+                    factor = self.numbers[factors[term.name]]
+                    sizes[term.name] = _shortened(share, factor, form)
+                else:
+                    # Of a sum of two sizes, the part of second order counts with another term.
+                    sizes[term.name] = combine((share * beyond, form))
+        return sizes
+
+    @property
+    def _command(self) -> str:
+        """Name of the result that the command is, of a motion controller."""
+        command = self.law.outputs["command"]
+        return command if "error" in self.terms else "command"
+
+    def _exact(self, form: LinearForm) -> LinearForm:
+        """Return what a form is without roundings."""
+        kept = len(form) - len(self.rounded)
+        return [*form[:kept], *(Fraction(0) for _ in form[kept:])]
+
+
+def _shortened(share: Fraction, factor: Fraction, form: LinearForm) -> LinearForm:
+    """Return a share of what is a factor times another form, in short numbers."""
+    return combine((short(share * factor) / factor if factor else ONE, form))
+
 
 # States of a list of operations: the error of motion of a sample ago, and the reference of
 # impedance controllers alone, of which the error of motion is kept.
 BEFORE, REFERENCE = "error_before", "reference"
-# What acts on a loop from outside, in this order; the last one is by how much a command is less
-# than what the law makes of the sample, where a driver limits it.
+# Inputs of a loop, in this order; the last one is the part of a command that a driver cuts off.
 INPUTS = (
     "velocity command",
     "friction",
@@ -101,29 +319,10 @@ class SampledProgram:
         return tuple(text for name, text in self.stored.items() if name.startswith("filtered_"))
 
     def wire(self, w: Wires, law: DiscreteLaw, turn: Turn) -> dict[str, LinearForm]:
-        """Set what a sample makes of ``measured`` and ``felt``.
+        """Set the results of a sample from ``measured`` and ``felt``.
 
-        Its results are ``command``, and the next states, such as ``reference+``. Return how large
-        each rounding is at most.
+        They are ``command`` and next states, such as ``reference+``. Return bounds on roundings.
         """
-        step = self._step(w, law)
-        sizes: dict[str, LinearForm] = {}
-        moving = law.law.commands == "velocity"
-        for name, result in self.listed.following.items():
-            if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
-                continue
-            moved = ONE if moving and name in self.places else ZERO
-            made = w.sum((ONE, step.result(result, w.nothing)), (moved, w[ROUNDED_REFERENCE]))
-            w.set({f"{name}+": made})
-        if turn is not Turn.ADMITTANCE:
-            streamed = ONE if self.step.takes is Takes.POSITION else ZERO
-            made = w.sum((ONE, step.command(w.nothing)), (streamed, w[ROUNDED_REFERENCE]))
-            w.set({"command": made})
-            sizes |= {} if self.step.streams else step.motion_sizes()
-        return sizes if turn is Turn.MOTION else sizes | step.other_sizes()
-
-    def _step(self, w: Wires, law: DiscreteLaw) -> RoundedStep:
-        rounded = {name: w[name] for name in self.roundings}
         given = {
             **{name: w[name] for name in self.stored},
             "angle": w["measured"],
@@ -133,8 +332,19 @@ class SampledProgram:
         if law.law.commands == "position":
             # A position is rounded when read, the reference of an admittance when it moves.
             given["position"] = w[ROUNDED_REFERENCE]
-        numbers: Mapping[str, Fraction] = self.step.numbers | numbers_in_force(
-            law, step_parts(self.laws), self.idle
-        )
-        terms = self.listed.terms(law, numbers, given, rounded)
-        return RoundedStep(self.listed, law, numbers, rounded, self.roundings, terms)
+        parts = step_parts(self.laws)
+        numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
+        rounded = {name: w[name] for name in self.roundings}
+        step = self.listed.step(law, numbers, given, rounded, self.roundings)
+        sizes: dict[str, LinearForm] = {}
+        moving = law.law.commands == "velocity"
+        for name, result in self.listed.following.items():
+            if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
+                continue
+            moved = ONE if moving and name in self.places else ZERO
+            w.set({f"{name}+": w.sum((ONE, step.result(result)), (moved, w[ROUNDED_REFERENCE]))})
+        if turn is not Turn.ADMITTANCE:
+            streamed = ONE if self.step.takes is Takes.POSITION else ZERO
+            w.set({"command": w.sum((ONE, step.command()), (streamed, w[ROUNDED_REFERENCE]))})
+            sizes |= {} if self.step.streams else step.motion_sizes()
+        return sizes if turn is Turn.MOTION else sizes | step.other_sizes()

@@ -1,8 +1,8 @@
 """One period of a sampled loop, exactly: a sample of the program, and the flow until the next.
 
 The state is ``[reference or e, drive, e before, u held, commands sent, other states of the law,
-force samples, deflection]``, as far as a loop has them (docs/certificates/drives.md). A command
-that is a position counts from the deflection, as the reference of impedance controllers does.
+force samples, deflection]``, as far as a loop has them (docs/certificates/drives.md). Positions
+that are commanded, or the reference of impedance controllers, count from the deflection.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from functools import cached_property
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Calendar, Turn
+from nrs_design.loop.located import Period
 from nrs_design.loop.program import (
     BEFORE,
     CUT_OFF,
@@ -26,25 +27,16 @@ from nrs_design.loop.program import (
     SampledProgram,
 )
 from nrs_design.loop.wires import Wires
-from nrs_design.models.drive import OMEGA, Takes
+from nrs_design.models.drive import OMEGA, Drive, Takes
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
 DELTA, HELD = "delta [rad]", "u held"
-# A row for each state of a drive, and for how far its joint goes: over these states, the
-# deflection, the command in force when a period begins, and its changes within the period.
+# Rows of each state of a drive, and of the motion of its joint: over these states, the deflection,
+# the command in force when a period begins, and its changes within the period.
 Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]
 NOTHING: Contact = (ZERO, ZERO)
-
-
-@dataclass(frozen=True, slots=True)
-class Period:
-    """Map of one period: linear forms over states, inputs and roundings."""
-
-    moves: tuple[LinearForm, ...]  # The states after it
-    sizes: tuple[LinearForm, ...]  # Bound on each rounding
-    command: LinearForm  # Before it is cut off
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,9 +61,7 @@ class SampledLoop:
     """Program, drive and calendar of a loop; contact and flow are arguments of its methods."""
 
     program: SampledProgram
-    takes: Takes | None  # Input of the drive; None for the command of a motor
-    moving: tuple[str, ...]  # States of the drive, the speed first and the deflection left out
-    memory: str | None  # State that relieves the spring of the contact, such as a damper deflection
+    drive: Drive
     calendar: Calendar
 
     @cached_property
@@ -82,13 +72,13 @@ class SampledLoop:
         before = [stored[BEFORE]] if BEFORE in stored else []
         held = [HELD] if calendar.holds else []
         others = [text for text in stored.values() if text not in (*place, *before)]
-        sent = (*self.moving, *before, *held, *calendar.sent)
+        sent = (*self.drive.states, *before, *held, *calendar.sent)
         return (*place, *sent, *others, *calendar.samples, DELTA)
 
     @cached_property
     def from_deflection(self) -> frozenset[str]:
         """The states that count from the deflection."""
-        stored, placed = self.program.stored, self.takes is Takes.POSITION
+        stored, placed = self.program.stored, self.program.step.takes is Takes.POSITION
         held = (HELD,) if self.calendar.holds else ()
         commands = (*held, *self.calendar.sent) if placed else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
@@ -107,11 +97,6 @@ class SampledLoop:
         """The states that show a force later: samples on their way, and the lags of its filter."""
         return (*self.calendar.samples, *self.program.lags)
 
-    @property
-    def remembers(self) -> bool:
-        """Whether a force sample outlasts its period."""
-        return bool(self.shown_later)
-
     def sample(
         self, law: DiscreteLaw, age: int, touched: Contact, turn: Turn = Turn.BOTH
     ) -> Sample:
@@ -120,8 +105,8 @@ class SampledLoop:
         `age` is that of the force sample. What `turn` does not compute holds what it had.
         """
         w, calendar, stored = self._wires(), self.calendar, self.program.stored
-        k, b = touched
-        pressed = ((k, w[DELTA]), *([(-k, w[self.memory])] if self.memory else []))
+        (k, b), memory = touched, self.drive.memory
+        pressed = ((k, w[DELTA]), *([(-k, w[memory])] if memory else []))
         w.rule("now", lambda: w.sum(*pressed, (b, w[OMEGA]), (ONE, w[FORCE_ERROR])))
         w.rule("felt", lambda: w[calendar.samples[age - 1]] if age else w["now"])
         w.rule("measured", lambda: w.sum(*((ONE, w[s]) for s in (DELTA, ENCODER, ROUNDED_ANGLE))))
@@ -151,14 +136,14 @@ class SampledLoop:
         """Return the map of a sample and of the flow after it; `rows` describe the drive."""
         w, sent, within = sample.wires, sample.sent, self.calendar.timing.within
         columns = [
-            *(w[name] for name in self.moving),
+            *(w[name] for name in self.drive.states),
             w[DELTA],
             w.sum((ONE, sent[-1]), (ONE, w[FRICTION])),
             *(w.sum((ONE, sent[age]), (-ONE, sent[age + 1])) for age in within),
         ]
 
         after = dict(sample.after)
-        for name in (*self.moving, DELTA):
+        for name in (*self.drive.states, DELTA):
             own = [(ONE, w[DELTA])] if name == DELTA else []
             after[name] = w.sum(*own, *zip(rows[name], columns, strict=True))
         delta = after[DELTA]

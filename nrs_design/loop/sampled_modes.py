@@ -10,45 +10,20 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.flow import AGAIN, HeldDrive
-from nrs_design.loop.located import (
-    AbstractLocatedMode,
-    ConstantParameter,
-    Spot,
-    labelled_ends,
-    spot_of,
-)
-from nrs_design.loop.sampled import Contact, Period, Rows, SampledLoop
+from nrs_design.loop.free_motion import Loss
+from nrs_design.loop.located import ConstantParameter, LocatedMode, Spot, labelled_ends, spot_of
+from nrs_design.loop.sampled import Contact, Rows, SampledLoop
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import GAIN, LOAD
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ZERO
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import MISS
 
 NOWHERE = Spot()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SampledMode(AbstractLocatedMode):
-    """A mode of a sampled loop; its contact is that of the force sample."""
-
-    begins: bool  # Whether a round begins with this mode
-    period: Period
-
-    @property
-    def A(self) -> RationalMatrix:
-        """Its map."""
-        n = len(self.period.moves)
-        return RationalMatrix.from_rows([row[:n] for row in self.period.moves])
-
-    def column(self, i: int) -> RationalMatrix:
-        """Return the column of the i-th input, or rounding after the inputs."""
-        moves = self.period.moves
-        return RationalMatrix.from_rows([[row[len(moves) + i]] for row in moves])
-
-
-# Where drive and load are, if modes stand at corners; force samples there; and flows.
+# The place of drive and load, at corners; force samples there; and flows.
 Touched = tuple[Spot, Sequence[tuple[Spot, Contact]], Sequence[tuple[Spot, Rows]]]
 
 
@@ -70,40 +45,53 @@ class Modes:
         """Whether the contact force acts on the motor."""
         return self.held.drive.loaded
 
-    def of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
-        """Yield the modes of a controller in all its contacts; in free motion if it has none.
+    def of_controllers(
+        self, controllers: Sequence[Controller], laws: Mapping[str, DiscreteLaw], loss: Loss
+    ) -> tuple[list[LocatedMode], list[LocatedMode]]:
+        """Return the modes, and those of free motion beside them.
 
-        A controller that takes no force touches what others do, where the sample outlasts it.
+        Where contact is lost anywhere, a controller moves freely as it does in one more contact.
         """
+        modes: list[LocatedMode] = []
+        beside: list[LocatedMode] = []
+        where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
+        for c in controllers:
+            law = laws[c.name]
+            modes += self._of_controller(c, law)
+            if c.contacts and where is not None:
+                where += self._of(c.name, (c.name, FREE), law, touches=FREE)
+        law, turns = next(iter(laws.values())), self.loop.calendar.turns
+        if turns[-1].is_miss:
+            modes += self._without_law(turns[-1], law, self.environments, FREE)
+            if where is not None:
+                where += self._without_law(turns[-1], law, (), FREE)
+        if Turn.MOTION in turns:
+            # No force sample reaches them.
+            contacts = self.environments if self._loaded else ()
+            modes += self._without_law(Turn.MOTION, law, contacts)
+            beside += self._without_law(Turn.MOTION, law, contacts, FREE) if beside else ()
+        return modes, beside
+
+    def _of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
+        """Yield the modes of a controller in all its contacts; in free motion if it has none."""
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
             # It is the same there as in contact, unless a sample or the motor feels the force.
-            touches = FREE if self.loop.remembers or self._loaded else ""
+            touches = FREE if self.loop.shown_later or self._loaded else ""
             yield from self._of(c.name, (c.name,), law, touches=touches)
             contacts = self.environments if touches else ()
         for e in contacts:
             yield from self._of(c.name, (c.name, e.name), law, e, contacts)
 
-    def in_the_air(self, c: Controller, law: DiscreteLaw) -> Iterator[SampledMode]:
-        """Yield the modes of a controller that has contacts and touches nothing."""
-        yield from self._of(c.name, (c.name, FREE), law, touches=FREE)
-
-    def between(self, law: DiscreteLaw, *where: str) -> Iterator[SampledMode]:
-        """Yield the modes at samples of the motion loop alone, which no force sample reaches."""
-        turn, group = Turn.MOTION, f"/{Turn.MOTION}"
-        contacts = self.environments if self._loaded else ()
+    def _without_law(
+        self, turn: Turn, law: DiscreteLaw, contacts: Sequence[Environment], *where: str
+    ) -> Iterator[LocatedMode]:
+        """Yield the modes of a sample at which no law is computed, in some contacts or in none."""
+        name, touches = (MISS, FREE) if turn.is_miss else (str(turn), "")
         for e in contacts:
-            yield from self._of(group, (str(turn), e.name), law, e, contacts, (turn,))
+            yield from self._of(f"/{name}", (name, e.name), law, e, contacts, (turn,))
         if not contacts:
-            yield from self._of(group, (str(turn), *where), law, turns=(turn,))
-
-    def missed(self, law: DiscreteLaw, contacts: Sequence[Environment]) -> Iterator[SampledMode]:
-        """Yield the modes of a period whose deadline is missed, in all contacts or in none."""
-        turns = self.loop.calendar.turns[-1:]
-        for e in contacts:
-            yield from self._of(f"/{MISS}", (MISS, e.name), law, e, contacts, turns)
-        if not contacts:
-            yield from self._of(f"/{MISS}", (MISS, FREE), law, turns=turns, touches=FREE)
+            yield from self._of(f"/{name}", (name, *where), law, turns=(turn,), touches=touches)
 
     def _of(
         self,
@@ -114,8 +102,8 @@ class Modes:
         contacts: Sequence[Environment] = (),
         turns: Sequence[Turn] = (),
         touches: str = "",
-    ) -> Iterator[SampledMode]:
-        """Yield the modes of a law while something is touched, or of turns that have none."""
+    ) -> Iterator[LocatedMode]:
+        """Yield the modes of a law in a contact or in none, or of turns without a law."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot.named(*names)
         # A force sample matters to a law without force feedback only if it is delayed.
@@ -125,18 +113,18 @@ class Modes:
                 for where, contact in seen:
                     sample = self.loop.sample(law, age, contact, turn)
                     for at, rows in flows:
-                        yield SampledMode(
+                        yield LocatedMode(
                             group,
                             head + spot + said + where + at,
                             touches if e is None else e.name,
-                            turn is Turn.BOTH,
                             self.loop.period(sample, rows),
+                            begins=turn is Turn.BOTH,
                         )
 
     def _samples(
         self, law: DiscreteLaw, turns: Sequence[Turn], contact: Contact
     ) -> Iterator[tuple[Turn, int, Spot]]:
-        """Yield what is computed with a force sample of what age, and how that is said."""
+        """Yield tasks, with the age of their force sample and its label."""
         first, last = self.loop.calendar.ages
         if not turns[0].has_law:
             yield from ((turn, 0, NOWHERE) for turn in turns)
@@ -153,19 +141,19 @@ class Modes:
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
     ) -> Iterator[Touched]:
         """Yield samples and flows in a contact, for every drive."""
-        constants, loaded, forced = self._constants(e), self._loaded, self.loop.takes_force
+        loaded, forced = self._loaded, self.loop.takes_force
+        constants = [c for c in self.constants if c.contact in (None, e and e.name)]
         real = () if loaded or (e is not None and e.depends) else LOAD
         for labels, held in self.drives or (((), self.held),):
             for load, own in self._loads(e, contacts):
                 texts = (*load, *labels)
-                # What acts on a drive is told from what is sampled, if a law takes that.
+                # The load of a drive is told from the sampled force, if a law takes that.
                 ends = labelled_ends(own if sampled and (forced or not loaded) else {})
                 seen = [
                     (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
                     for said, at in ends
                 ]
-                # Not by what is touched: a flow names constants of a contact only where there is
-                # just one.
+                # The contact is no key: a flow names constants of a contact only if it is alone.
                 key = held, tuple(own.items()) if loaded else ()
                 if key not in self._known:
                     self._known[key] = tuple(
@@ -183,16 +171,11 @@ class Modes:
         if e is None or not self._loaded or (self.drives and e.depends):
             yield (), own
         elif not self.drives:
-            # It may be another one within a period, too, or nothing where contact is lost.
+            # Within a period it may become another one, or be lost.
             yield (), anything_of(contacts, lost=self.loses)
         else:
             for labels, values in labelled_ends(own):
                 yield labels, {symbol: Interval.point(value) for symbol, value in values.items()}
-
-    def _constants(self, e: Environment | None) -> tuple[ConstantParameter, ...]:
-        """Return the constant parameters of the drive and of the contact."""
-        known = (None, e and e.name)
-        return tuple(c for c in self.constants if c.contact in known)
 
 
 def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:

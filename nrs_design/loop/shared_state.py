@@ -1,12 +1,12 @@
 """The state that all modes of one robot axis share, and the rows of a mode in it.
 
-While another environment is touched, the memory of an environment decays as it does without force.
+The memory of an environment that is not touched decays as it does without force.
 
 Impedance controllers may stand beside position and force controllers. These give the motion loop a
 position; impedance controllers give it a velocity, which the robot integrates to a position
-``r' = vc - vm``. The loop from r to the position theta is the same G, so with its states xi every
-mode is written in ``[xi, vm, r]`` (without virtual inertia ``[xi, r]``): ``xi' = Ap xi + Bp r``,
-``theta = Cp xi``. Where another controller is active, vm and r are idle.
+``r' = vc - vm``. With the states xi of the same loop G every mode is written in ``[xi, vm, r]``
+(without virtual inertia ``[xi, r]``): ``xi' = Ap xi + Bp r``, ``theta = Cp xi``. Where another
+controller is active, vm and r are idle.
 """
 
 from __future__ import annotations
@@ -15,36 +15,22 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import (
-    SHARED_STATES,
-    ControllerDesign,
-)
+from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.modes import (
-    Rows,
-    lead,
-    position_mode,
-    velocity_mode,
-    with_idle,
-    with_last,
-)
+from nrs_design.loop.modes import Rows, lead, position_mode, velocity_mode, with_idle, with_last
 from nrs_design.loop.parameter_box import Box, Joint
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.motion_loop import (
-    JointMotionLoop,
-    LoadedMotionLoop,
-    MotionLoop,
-    Realization,
-    realize,
-)
+from nrs_design.models.linear_form import ZERO
+from nrs_design.models.motion_loop import JointMotionLoop, LoadedMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
+from nrs_design.spec.build_plant import OperatingConditions
 from nrs_design.spec.controllers import Offset
 
-# What impedance controllers in a mixture integrate their velocity to.
+# The integral of the velocity of impedance controllers in a mixture.
 REFERENCE = "reference [rad]"
 
 
@@ -54,14 +40,13 @@ class SharedState:
 
     design: ControllerDesign  # Gains that ship
     environments: tuple[Environment, ...]
-    realization: Realization  # Of the motion loop
+    realization: Realization  # The motion loop
     given: bool  # Whether the spec states the motion loop
     joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
     law: CompliantLaw  # Whose states the modes share
-    # What the states of impedance controllers do while another kind of controller is active; None
-    # where there is one kind only.
+    # Motion of idle states of impedance controllers; None for controllers of one kind.
     idle: IdleStatesSpec | None = None
-    offset: Offset = "none"  # Where force controllers take it from
+    offset: Offset = "none"  # Source of the offset of force controllers
     bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
 
     @property
@@ -122,7 +107,7 @@ class SharedState:
 
     @property
     def feels(self) -> bool:
-        """Whether it matters to a controller that takes no force what it touches."""
+        """Whether contacts differ for a controller that takes no force."""
         return self.joint is not None or self.low_pass is not None or bool(self.memories)
 
     def contact_box(self, environment: Environment | None) -> Box:
@@ -148,7 +133,7 @@ class SharedState:
         """
         contact = None if environment is None else environment.at(values)
         others = self.bleeding if self.idle is not None and not law.bleeds else ()
-        decay = Fraction(0) if self.idle is None else idle_decay(self.idle)
+        decay = ZERO if self.idle is None else idle_decay(self.idle)
         if self.is_placed:
             bleeding = decay if others else None
             rows = position_mode(self.placed, law, contact, self.low_pass, bleeding)
@@ -173,54 +158,56 @@ def _rate(environment: Environment) -> str:
 
 
 def shared_state(
-    plant: Plant,
-    loop: MotionLoop,
-    design: ControllerDesign,
-    *,
-    idle: IdleStatesSpec | None = None,
-    offset: Offset = "none",
+    conditions: OperatingConditions, plant: Plant, design: ControllerDesign
 ) -> SharedState:
     """Return the shared state of the modes of a design; an `AssemblyError` if they share none."""
-    laws = [controller.law for controller in design.controllers]
-    leading = design.leading_laws(mixed=idle is not None)
+    laws, idle = [controller.law for controller in design.controllers], conditions.idle
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     state = SharedState(
         design,
         plant.among(design.contacts),
         realize(loop),
         loop.given,
         Joint.of(plant, design.motion),
-        leading[0],
+        design.leading_laws(mixed=idle is not None)[0],
         idle,
-        offset,
+        conditions.offset,
         next((law.states for law in laws if law.bleeds), ()),
     )
-    fault = next(_faults(state), None)
-    if fault is not None:
+    if (fault := next(_faults(state), None)) is not None:
         raise fault
     return state
 
 
 def _faults(state: SharedState) -> Iterator[AssemblyError]:
     """Yield the reasons why the modes share no state."""
-    mixed = state.idle is not None
-    for environment in state.environments:
-        law, at = environment.law, ("environments", environment.name)
-        if not law.has_rest and state.is_placed:
+    controllers = state.design.controllers
+    restless = [e for e in state.environments if not e.law.has_rest]
+    for environment in restless:
+        at = ("environments", environment.name)
+        said = f"environment {environment.name} has no rest position ({environment.law.name}), "
+        if state.is_placed:
             yield AssemblyError(
-                f"environment {environment.name} has no rest position ({law.name}), from which "
-                "positions of position and force controllers count",
+                f"{said}from which positions of position and force controllers count",
                 remedy="use another environment, or impedance controllers alone",
                 at=at,
             )
-        if not law.has_rest and len(state.environments) > 1:
+        if len(state.environments) > 1:
             yield AssemblyError(
-                f"environment {environment.name} has no rest position ({law.name}), so it shares "
-                "no deflection with another environment",
+                f"{said}so it shares no deflection with another environment",
                 remedy="let the controllers touch no other environment, or write a spec for each",
                 at=at,
             )
-    yield from _faults_of_springs(state)
-    if (odd := state.design.find_odd_states(mixed=mixed)) is not None:
+    sprung = next((c.name for c in controllers if c.law.spring), None)
+    if sprung is not None and restless:
+        # The state does not tell the displacement of the spring.
+        yield AssemblyError(
+            f"an admittance with a spring Kt is not modelled in contact with {restless[0].name}, "
+            f"which has no rest position ({restless[0].law.name})",
+            remedy="leave Kt out, or give the environment a law that has a rest position",
+            at=("controllers", sprung, "Kt"),
+        )
+    if (odd := state.design.find_odd_states(mixed=state.idle is not None)) is not None:
         yield AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
@@ -230,18 +217,4 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
             "takes over, the speed jumps by numbers of the motor that are not known",
             remedy="give nominal values of the actuator, or add sampling",
             at=("actuator",),
-        )
-
-
-def _faults_of_springs(state: SharedState) -> Iterator[AssemblyError]:
-    """Yield why the state does not tell the displacement of a spring in an admittance."""
-    name = next((c.name for c in state.design.controllers if c.law.spring), None)
-    restless = next((e for e in state.environments if not e.law.has_rest), None)
-    at = ("controllers", str(name), "Kt")
-    if name is not None and restless is not None:
-        yield AssemblyError(
-            f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "
-            f"which has no rest position ({restless.law.name})",
-            remedy="leave Kt out, or give the environment a law that has a rest position",
-            at=at,
         )

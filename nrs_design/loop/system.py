@@ -1,4 +1,4 @@
-"""The switched system of a sampled loop: its modes, what disturbs it, and how contact is lost."""
+"""The switched system of a sampled loop: modes, disturbances, roundings and contact loss."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.calendar import Calendar, CommandTiming, Turn, turns_of
+from nrs_design.loop.calendar import Calendar, CommandTiming, turns_of
 from nrs_design.loop.constraints import (
     assemble_switching,
     clock_of,
@@ -31,7 +31,8 @@ from nrs_design.loop.free_motion import (
     lost_on_surface,
     outputs_of,
 )
-from nrs_design.loop.located import ConstantParameter, enclosures_of, grouped
+from nrs_design.loop.located import ConstantParameter, LocatedMode, enclosures_of, grouped
+from nrs_design.loop.loop_assumptions import assume_sampled_loop
 from nrs_design.loop.program import (
     FORCE_ERROR,
     INPUTS,
@@ -40,11 +41,10 @@ from nrs_design.loop.program import (
     SampledProgram,
 )
 from nrs_design.loop.sampled import NOTHING, SampledLoop
-from nrs_design.loop.sampled_assumptions import assume_sampled_loop
-from nrs_design.loop.sampled_modes import Modes, SampledMode
+from nrs_design.loop.sampled_modes import Modes
 from nrs_design.loop.saturation import with_sampled_saturation
 from nrs_design.models.drive import Drive
-from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.linear_form import ONE, ZERO, LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_down, rounded_up
@@ -55,7 +55,6 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.build_plant import OperatingConditions
-from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.spec.sampling import SamplingSpec
@@ -63,17 +62,18 @@ from nrs_design.spec.sampling import SamplingSpec
 
 def close_sampled_loop(
     conditions: OperatingConditions,
-    sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
     constants: Sequence[ConstantParameter] = (),
     *,
     points: bool = False,
-) -> tuple[SwitchedSystem, Sequence[SampledMode]]:
+) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Return the system of a sampled loop, and its modes.
 
-    `points`: of drives that there are, at the ends of their ranges, instead of what encloses all.
+    `points`: of drives at the ends of their ranges, instead of the enclosure of all drives.
     """
+    sampling = conditions.sampling
+    assert sampling is not None
     if (odd := sampling.find_odd_periods()) is not None:
         raise AssemblyError(odd, remedy="change both periods", at=("sampling", "outer_period"))
     laws = {
@@ -81,9 +81,9 @@ def close_sampled_loop(
     }
     environments = plant.among(design.contacts)
     if points:
-        # The rates of a memory depend on its stiffness, so ends of them are none of a loop.
-        environments = tuple(e.scaled(Fraction(0)) if e.law.remembers else e for e in environments)
-        # What saturates is looked at in what encloses all.
+        # The rates of a memory depend on its stiffness: their ends belong to no loop.
+        environments = tuple(e.scaled(ZERO) if e.law.remembers else e for e in environments)
+        # Saturation is stated for the enclosure of all drives.
         conditions = replace(conditions, initial_force=None)
     drive = plant.held_at(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
@@ -94,18 +94,18 @@ def close_sampled_loop(
         held,
         environments,
         tuple(constants),
-        # A controller that has no contacts takes them as they come.
+        # A controller without contacts of its own is in any of them.
         loss.anywhere or not all(c.contacts for c in design.controllers),
         tuple(held.points()) if points else (),
     )
-    modes, free = _modes(every, design, laws, loss)
+    modes, free = every.of_controllers(design.controllers, laws, loss)
     items = (*modes, *free)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
     velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
     pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if drive.speed is not None:
-        # It jumps after the sample, and the force of what is damped with it.
+        # The velocity jumps after the sample, and with it a damped force.
         damped = any(environment.load[1].high for environment in environments)
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
@@ -148,11 +148,21 @@ def _wired(
     design: ControllerDesign,
     laws: tuple[DiscreteLaw, ...],
 ) -> SampledLoop:
-    """Return program, drive and calendar of a loop; force samples are kept if a law takes them."""
+    """Return program, drive and calendar of a loop; force samples are kept if a law takes them.
+
+    An `AssemblyError` if the controllers share no state.
+    """
+    idle, low_pass, motion = conditions.idle, design.sensor.filter, design.motion
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
+        raise AssemblyError(
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
+        )
+    filtered = None if low_pass is None else low_pass.discretize(sampling.outer)
+    step = StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered, takes=design.takes)
+    program = SampledProgram(step, laws, None if idle is None else idle_share(idle, sampling.outer))
     timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
     calendar = Calendar(timing, turns=turns_of(sampling))
-    program = _program(conditions.idle, sampling, design, laws)
-    loop = SampledLoop(program, design.takes, drive.states, drive.memory, calendar)
+    loop = SampledLoop(program, drive, calendar)
     if not loop.takes_force:
         return loop
     return replace(loop, calendar=replace(calendar, ages=sampling.delay))
@@ -167,54 +177,8 @@ def _resets(
         yield from ((*pair, map_) for pair in leaving_impedance(design.controllers))
 
 
-def _program(
-    idle: IdleStatesSpec | None,
-    sampling: SamplingSpec,
-    design: ControllerDesign,
-    laws: tuple[DiscreteLaw, ...],
-) -> SampledProgram:
-    """Return the program of all controllers; an `AssemblyError` if they share no state."""
-    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
-        raise AssemblyError(
-            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
-        )
-    low_pass, motion, outer = design.sensor.filter, design.motion, sampling.outer
-    filtered = None if low_pass is None else low_pass.discretize(outer)
-    damping = motion.over(sampling.period.exact)
-    return SampledProgram(
-        StepFrame(motion.Kp, damping, filtered, takes=design.takes),
-        laws,
-        None if idle is None else idle_share(idle, outer),
-    )
-
-
-def _modes(
-    every: Modes, design: ControllerDesign, laws: dict[str, DiscreteLaw], loss: Loss
-) -> tuple[tuple[SampledMode, ...], tuple[SampledMode, ...]]:
-    """Return the modes, and those of free motion beside them.
-
-    Where contact is lost anywhere, a controller moves freely as it does in one more contact.
-    """
-    modes: list[SampledMode] = []
-    beside: list[SampledMode] = []
-    where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
-    for c in design.controllers:
-        modes += every.of_controller(c, laws[c.name])
-        if c.contacts and where is not None:
-            where += every.in_the_air(c, laws[c.name])
-    law, turns = next(iter(laws.values())), every.loop.calendar.turns
-    if turns[-1].is_miss:
-        modes += every.missed(law, every.environments)
-        if where is not None:
-            where += every.missed(law, ())
-    if Turn.MOTION in turns:
-        modes += every.between(law)
-        beside += every.between(law, FREE) if beside else ()
-    return tuple(modes), tuple(beside)
-
-
-def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None:
-    """Return which modes may be in force: some begin a round, or are those in time."""
+def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:
+    """Return the clock of rounds, or of missed deadlines."""
     begins = tuple(item.name for item in items if item.begins)
     if sampling.misses is not None:
         return clock_of(automaton_of(*sampling.misses.window), begins)
@@ -222,12 +186,9 @@ def _clock(sampling: SamplingSpec, items: Iterable[SampledMode]) -> Clock | None
 
 
 def _channels(
-    conditions: OperatingConditions, off: Fraction, items: Sequence[SampledMode]
+    conditions: OperatingConditions, off: Fraction, items: Sequence[LocatedMode]
 ) -> Iterator[Channel]:
-    """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
-
-    `off`, in N m, is how far the force signal may be off for long.
-    """
+    """Yield disturbances, and errors of the sensor: `off`, in N m, is the lasting one of force."""
     if conditions.disturbances is None:
         return
     bounds = dict(conditions.disturbances)
@@ -243,7 +204,7 @@ def _channels(
 
 
 def _roundings(
-    loop: SampledLoop, channels: Sequence[Channel], items: Sequence[SampledMode]
+    loop: SampledLoop, channels: Sequence[Channel], items: Sequence[LocatedMode]
 ) -> Iterator[Rounding]:
     """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
     n, named = len(loop.states), {channel.name for channel in channels}
@@ -256,20 +217,15 @@ def _roundings(
 
 
 def _motor_command(
-    largest: Fraction | None,
-    unit: str,
-    loop: SampledLoop,
-    channels: Sequence[Channel],
+    largest: Fraction | None, unit: str, loop: SampledLoop, channels: Sequence[Channel]
 ) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
-    """Return the command under disturbances, roundings included, and what it leaves out.
+    """Return the command under disturbances, roundings included, and its assumption.
 
-    While it stays below the limit of the driver, the driver does nothing but what the model says:
-    so a bound from rest, below the limit, excludes saturation under the same disturbances.
-
-    Impedance controllers change the reference after the command, so it is one and the same form of
-    the states in all modes, in contact and free. A rounding is at most a share of other forms, so
-    the command is a mixture of rows in which every share is added or subtracted. Nothing without
-    disturbances or a limit, or where it is not of this form.
+    A bound from rest, below the limit of the driver, excludes saturation under the same
+    disturbances. Impedance controllers change the reference after the command, so it is the same
+    form of the states in all modes. A rounding is at most a share of other forms, so the command is
+    a mixture of rows in which every share is added or subtracted. Nothing without disturbances or a
+    limit, or for other controllers.
     """
     moving = all(law.law.commands == "velocity" for law in loop.program.laws)
     if largest is None or not channels or not moving or loop.calendar.holds:
@@ -279,10 +235,9 @@ def _motor_command(
     end = n + len(INPUTS)
     bounds = {channel.name: channel.bound for channel in channels}
     shares = list(zip(form[end:], sample.sizes, strict=True))
-    # What the disturbances of a sample add to its command at once, at most.
-    at_once = _largest(form[n:end], bounds) + sum(
-        (abs(c) * _largest(size[n:end], bounds) for c, size in shares), Fraction(0)
-    )
+    # Largest change of the command by disturbances of its own sample.
+    inputs = [(ONE, form[n:end]), *((abs(c), size[n:end]) for c, size in shares)]
+    at_once = sum((c * _largest(row, bounds) for c, row in inputs), ZERO)
     rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
     rows = tuple(
         RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
@@ -304,5 +259,5 @@ def _motor_command(
 
 def _largest(form: LinearForm, bounds: dict[str, Fraction]) -> Fraction:
     """Return the largest value of a form of the inputs; inputs without a bound are zero."""
-    sizes = (abs(c) * bounds.get(name, Fraction(0)) for name, c in zip(INPUTS, form, strict=True))
-    return sum(sizes, Fraction(0))
+    sizes = (abs(c) * bounds.get(name, ZERO) for name, c in zip(INPUTS, form, strict=True))
+    return sum(sizes, ZERO)

@@ -10,10 +10,7 @@ from nrs_design.models.linear_form import ONE, LinearForm, combine, coordinates,
 
 
 class Wires:
-    """The signals of a loop; a block states rules for those that it makes.
-
-    A signal is made when it is asked for, once. Whoever asks for it does not know who makes it.
-    """
+    """The signals of a loop; blocks state rules, by which a signal is made when it is wanted."""
 
     def __init__(self, names: Sequence[str]) -> None:
         """Begin with the signals from which all others follow."""

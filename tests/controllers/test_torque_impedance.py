@@ -9,7 +9,7 @@ from nrs_design.controllers.laws.torque_impedance import TorqueImpedance
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.errors import DesignError
-from nrs_design.loop.sampled_law import kinds_of, list_law
+from nrs_design.loop.program import kinds_of, list_law
 from nrs_design.models.drive import Takes
 
 F = Fraction

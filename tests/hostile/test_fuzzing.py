@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.arrays.files import read_proposal
+from nrs_design.api.proposal import read_proposal
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError

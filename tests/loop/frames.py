@@ -35,7 +35,7 @@ class Frame:
     def loop(self):
         calendar = Calendar(self.timing, (0, self.longest_delay), self.turns)
         program = SampledProgram(self.step, self.laws, self.idle)
-        return SampledLoop(program, self.step.takes, self.drive.states, self.drive.memory, calendar)
+        return SampledLoop(program, self.drive, calendar)
 
     def rows(self, law, delay, values, turn=Turn.BOTH):
         """Return the map of a period, below it the sizes of roundings, and the command.

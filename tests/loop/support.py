@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
+from scipy.optimize import linprog
 
 from nrs_design.loop.assemble import assemble
 from nrs_design.models.motion_loop import MotionLoop, realize
@@ -49,6 +50,21 @@ def polynomial(rows):
 def stable(rows):
     """Whether a matrix is Hurwitz."""
     return is_hurwitz(RationalMatrix.from_rows(rows).numerators)
+
+
+def outside(points, place):
+    """How far a place is from the hull of points, which are columns; negative inside."""
+    one = -np.ones((len(place), 1))
+    done = linprog(
+        [*np.zeros(points.shape[1]), 1],
+        A_ub=np.block([[points, one], [-points, one]]),
+        b_ub=[*place, *(-x for x in place)],
+        A_eq=[[*np.ones(points.shape[1]), 0]],
+        b_eq=[1],
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    assert done.status == 0, done.message
+    return done.fun
 
 
 def objects(*entries):

@@ -1,6 +1,6 @@
 """All modes of a design in one state, and what is said about them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -22,18 +22,26 @@ from nrs_design.controllers.laws import (
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.close_loop import close_loop
 from nrs_design.loop.modes import velocity_mode
-from nrs_design.loop.shared_state import shared_state
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
 from nrs_design.models.plant import Plant
-from tests.loop.support import LOOP, MOTION, objects, polynomial, positive, stable
-from tests.support import words_of
+from nrs_design.spec.build_plant import build_conditions
+from tests.loop.support import LOOP, MOTION, loaded, objects, polynomial, positive, stable
+from tests.support import SOFT_TISSUE, words_of
 
 F = Fraction
 MOTOR = Actuator(F(1), F(1))
+CONDITIONS = build_conditions(loaded(SOFT_TISSUE).spec)
+
+
+def closed(environments, *controllers, contact=None):
+    """Close the motion loop of the thesis around some environments."""
+    plant = Plant(MOTOR, tuple(environments), ActuatorRanges.point(MOTOR), LOOP)
+    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
+    return close_loop(replace(CONDITIONS, contact=contact), plant, design)[0]
 
 
 def impedance(name, Mt, contacts=("soft",)):
@@ -45,9 +53,7 @@ def assembled(*controllers, contact=None):
     hand = Environment(
         "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
     )
-    plant = Plant(MOTOR, (soft, hand), ActuatorRanges.point(MOTOR))
-    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
-    return close_loop("robot", shared_state(plant, LOOP, design), contact=contact)[0]
+    return closed((soft, hand), *controllers, contact=contact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,11 +146,8 @@ ENVIRONMENTS = {
 
 @cache
 def viscoelastic(*contacts, Mt="0.01", law=None):
-    plant = Plant(MOTOR, tuple(ENVIRONMENTS.values()), ActuatorRanges.point(MOTOR))
     law = law or Admittance(F(Mt), F(2))
-    controller = Controller("in", law, contacts[0], contacts)
-    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design))[0]
+    return closed(ENVIRONMENTS.values(), Controller("in", law, contacts[0], contacts))
 
 
 def product_of(*polynomials):
@@ -240,7 +243,5 @@ def test_things_touched_at_once():
 def touched_at_once(other, *, losable):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     both = touch_at_once((soft, other), losable=losable)
-    plant = Plant(MOTOR, (soft, other, both), ActuatorRanges.point(MOTOR))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
-    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", shared_state(plant, LOOP, design))[0]
+    return closed((soft, other, both), controller)

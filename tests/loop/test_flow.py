@@ -8,7 +8,6 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
@@ -34,6 +33,7 @@ from nrs_design.models.drive import (
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from tests.loop.frames import Frame
+from tests.loop.support import outside
 from tests.loop.test_entries import DRIVES
 
 F = Fraction
@@ -168,18 +168,7 @@ def far(points, rows):
             b.append(float(gap * spread.denominator / spread.numerator))
         elif abs(gap) > mp.mpf(10) ** -40 * (1 + abs(rows[name][j])):
             return float("inf")
-    if not A:
-        return 0.0
-    one, count = -np.ones((len(b), 1)), len(points)
-    done = linprog(
-        [*np.zeros(count), 1],
-        A_ub=np.block([[np.array(A), one], [-np.array(A), one]]),
-        b_ub=[*b, *(-x for x in b)],
-        A_eq=[[*np.ones(count), 0]],
-        b_eq=[1],
-        options={"primal_feasibility_tolerance": 1e-9, "dual_feasibility_tolerance": 1e-9},
-    )
-    return done.fun if done.status == 0 else float("inf")
+    return outside(np.array(A), b) if A else 0.0
 
 
 SLOW = pytest.param(range(40, 150), marks=pytest.mark.slow)

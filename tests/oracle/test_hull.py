@@ -5,10 +5,9 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 
 from nrs_design.errors import NrsDesignError
-from tests.loop.support import assembled
+from tests.loop.support import assembled, outside
 from tests.oracle.plant import draw, step
 
 # Shares of an entry: what single precision and enclosures are off, and what an error makes.
@@ -180,18 +179,7 @@ def beside(matrices, found):
     modes = np.array([A.ravel() for A in matrices]).T
     size = np.maximum(np.abs(modes).max(axis=1), np.abs(found.ravel()))
     size = np.maximum(size, 1e-12 * size.max())
-    A, b = modes / size[:, None], found.ravel() / size
-    one = -np.ones((len(b), 1))
-    done = linprog(
-        [*np.zeros(A.shape[1]), 1],
-        A_ub=np.block([[A, one], [-A, one]]),
-        b_ub=[*b, *-b],
-        A_eq=[[*np.ones(A.shape[1]), 0]],
-        b_eq=[1],
-        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
-    )
-    assert done.status == 0, done.message
-    return done.fun
+    return outside(modes / size[:, None], found.ravel() / size)
 
 
 def moving(names, matrices):

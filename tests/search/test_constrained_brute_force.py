@@ -12,8 +12,8 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.loop.given_matrices import modes_with_misses
-from nrs_design.loop.located import MatrixMode, Spot
+from nrs_design.loop.assemble import modes_with_misses
+from nrs_design.loop.located import LocatedMode, Period, Spot
 from nrs_design.pipeline.radius import bound_radius
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
@@ -79,7 +79,7 @@ class Misses:
     def system(self, modes):
         first = family(*modes[:2], time=Time.DISCRETE)
         items = [
-            MatrixMode(name, Spot.named(name), "", mode.A)
+            LocatedMode(name, Spot.named(name), "", Period(mode.A.fractions()))
             for name, mode in zip(("hit", "miss"), first.modes, strict=True)
         ]
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)

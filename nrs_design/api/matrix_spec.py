@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from nrs_design.arrays.exact import is_state_space, read_number, read_rows, time_of
+from nrs_design.api.exact import is_state_space, read_number, read_rows, time_of
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec

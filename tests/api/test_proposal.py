@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from nrs_design.arrays.files import read_proposal
+from nrs_design.api.proposal import read_proposal
 from nrs_design.errors import DataError
 
 A = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.25, -1.0]]])

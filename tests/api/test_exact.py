@@ -7,7 +7,7 @@ import control
 import numpy as np
 import pytest
 
-from nrs_design.arrays.exact import read_matrix, read_number, read_rows, time_of
+from nrs_design.api.exact import read_matrix, read_number, read_rows, time_of
 from nrs_design.errors import SpecError
 from nrs_design.proof.mode import Time
 

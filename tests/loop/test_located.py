@@ -5,12 +5,17 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.loop import constant_parameters
-from nrs_design.loop.constant_parameters import constant_sets
-from nrs_design.loop.located import ConstantParameter, MatrixMode, Spot, spot_of
+from nrs_design.loop import located
+from nrs_design.loop.located import (
+    ConstantParameter,
+    LocatedMode,
+    Period,
+    Spot,
+    constant_sets,
+    spot_of,
+)
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
@@ -46,7 +51,7 @@ def sets_of(names, *parameters):
         head, where, *labels = name.split("/")
         own = [p for p in parameters if p.contact in (None, where)]
         spot = Spot.named(head, where) + spot_of(labels, (), own)
-        items.append(MatrixMode(head, spot, where, RationalMatrix.from_rows([[1]])))
+        items.append(LocatedMode(head, spot, where, Period([[1]])))
     return [*constant_sets(items, parameters)]
 
 
@@ -72,7 +77,7 @@ def test_a_corner_without_a_mode_is_an_error():
 
 
 def test_too_many_corners(monkeypatch):
-    monkeypatch.setattr(constant_parameters, "MAX_CORNERS", 50)
+    monkeypatch.setattr(located, "MAX_CORNERS", 50)
     with pytest.raises(AssemblyError, match="corners of the constant parameters"):
         closed(*constant(GAIN, STIFFNESS))
 

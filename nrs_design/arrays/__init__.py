@@ -1,1 +1,0 @@
-"""What users bring from elsewhere: matrices as arrays, text or state spaces, and files of them."""

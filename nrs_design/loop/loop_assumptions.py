@@ -1,0 +1,361 @@
+"""Assumptions about the loop of an interaction design, sampled or in continuous time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from nrs_design.axis import AxisType
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.controllers.gains import idle_decay
+from nrs_design.controllers.laws import LAWS, CompliantLaw, DiscreteLaw
+from nrs_design.loop.assumptions import COMMAND_UNIT, assume, assume_rules
+from nrs_design.loop.free_motion import Loss
+from nrs_design.loop.program import SampledProgram
+from nrs_design.loop.sampled import SampledLoop
+from nrs_design.loop.shared_state import REFERENCE, SharedState
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import Takes
+from nrs_design.models.interval import moving
+from nrs_design.models.plant import Plant
+from nrs_design.proof.assumption import Assumption
+from nrs_design.proof.bounds import rounded_down
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.spec.build_plant import OperatingConditions
+from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.spec.units import THESIS_COMMAND
+
+UNCOUPLED = assume("uncoupled.axes")
+
+
+def assume_loop(
+    loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
+) -> Iterator[Assumption]:
+    """Yield the assumptions about an interaction design.
+
+    `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
+    motion is one of the modes; `limited`: some statement is about signals that saturate.
+    """
+    design = loop.design
+    yield from _assume_motion(loop)
+    yield from _assume_inputs(loop, losable=losable)
+    yield UNCOUPLED
+    yield from _assume_contacts(design)
+    if loop.feels and not all(c.contacts for c in design.controllers):
+        yield assume("contacts.in-position")
+    yield from _assume_parts(loop.environments)
+    about = "tissue.linear" if loop.offset == "none" else "tissue.offset"
+    yield _assume_tissue(loop.environments, design.axis, about)
+    integrated = any(c.law.commands == "velocity" for c in design.controllers)
+    if integrated and all(e.law.has_rest for e in loop.environments):
+        yield assume("at-a-switch.deflection")
+    for e in loop.environments:
+        yield from e.law.assumptions(e.name, alone=len(loop.environments) == 1)
+    yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
+    # If contact may be lost, each statement says whether it covers the loss.
+    if free:
+        yield assume("contact-lost.anywhere")
+    elif not losable:
+        yield from _assume_kept_contact(design, alone=loop.idle is None)
+    reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
+    which = "others" if reset else "all"
+    if rules.is_arbitrary:
+        yield assume("at-a-switch.any-signal", which=which)
+    else:
+        yield assume("at-a-switch.continuous", which=which)
+        yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
+        if not rules.names_contacts and rules.dwell_time is None:
+            yield assume("any-signal.environment")
+    yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
+    yield assume("numbers.gains")
+    yield from _assume_command_unit(design.command, design.axis)
+
+
+def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
+    """Yield the model of the motion loop and of its load."""
+    joint, axis = loop.joint, loop.design.axis
+    if joint is None:
+        yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
+        return
+    motor = "nominal-motor.joint" if joint.ranges.fixed else "motor.joint"
+    yield assume(motor, **joint.ranges.assumed(axis))
+    if joint.load_inertia is None:
+        yield assume("unloaded.continuous")
+    else:
+        inertia = f"{exact_text(joint.load_inertia)} {axis.unit('kg*m^2')}"
+        yield assume("load.inertia", inertia=inertia)
+
+
+def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
+    """Yield the inputs, and the equilibria for zero inputs."""
+    if loop.offset != "none":
+        yield assume("rest-position.moving")
+        yield assume("at-a-switch.offset", taken=loop.offset)
+        if loop.offset == "measured":
+            yield assume("at-a-switch.lead")
+            yield assume("at-a-switch.kick")
+        yield assume("inputs.constant")
+        return
+    yield assume("inputs.continuous", rest="contact" if losable else "always")
+    sprung = any(c.law.spring for c in loop.design.controllers)
+    yield assume("inputs.bounded", also=sprung and "bounded", air=losable and "open")
+    if sprung:
+        yield assume("spring.shared" if loop.idle is None else "spring.idle")
+
+
+def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
+    """Yield the evolution of idle states of impedance controllers, and of an idle integral."""
+    named, laws = loop.design.axis.named, [c.law for c in loop.design.controllers]
+    decay = idle_decay(idle)
+    rate = decay and exact_decimal(decay)
+    driving = _names(law for law in laws if law.commands == "velocity")
+    others = _names(law for law in laws if law.commands == "position")
+    if driving:
+        how, states = "decay" if decay else "held", map(named, (*loop.law.states, REFERENCE))
+        yield assume(
+            f"idle.{how}", driving=driving, others=others, states=tuple(states), decay=rate
+        )
+    if (law := next((law for law in laws if law.bleeds), None)) is not None:
+        yield assume(
+            "idle.integral" if decay else "idle.held-integral",
+            others=_names(law for law in laws if not law.bleeds),
+            states=tuple(map(named, law.states)),
+            law=law.name,
+            decay=rate,
+        )
+    if idle.reset and driving:
+        yield assume("at-a-switch.zeroed", driving=driving, others=others)
+    yield assume("rest-position.commanded")
+    yield assume("at-a-switch.kick")
+
+
+def _names(laws: Iterable[CompliantLaw]) -> tuple[str, ...]:
+    """Return the distinct names of some laws."""
+    return tuple(dict.fromkeys(law.name for law in laws))
+
+
+def assume_sampled_loop(
+    conditions: OperatingConditions,
+    sampling: SamplingSpec,
+    plant: Plant,
+    loop: SampledLoop,
+    laws: Mapping[str, DiscreteLaw],
+    design: ControllerDesign,
+    loss: Loss,
+) -> Iterator[Assumption]:
+    """Yield the assumptions about the sampled loop of an interaction design."""
+    reset = conditions.idle is not None and conditions.idle.reset
+    disturbed = conditions.disturbances is not None
+    environments, program = plant.among(design.contacts), loop.program
+    timing, axis = loop.calendar.timing, conditions.axis
+    beyond = disturbed and "disturbances"
+    single, steady = sampling.round == 1, sampling.jitter is None
+    how = ("single" if steady else "jitter") if single else "double" + "-jitter" * (not steady)
+    yield assume(
+        f"period.{how}",
+        period=exact_text(sampling.period.exact),
+        jitter=not steady and exact_text(sampling.unsteady),
+        outer=not single and exact_text(sampling.outer),
+        sampled=not single and design.sensor.filter and "filter",
+    )
+    if not single:
+        yield assume("period.order")
+    if (misses := sampling.misses) is not None:
+        at_most, of = misses.window
+        yield assume(f"deadlines.{misses.command}", at_most=at_most, of=of)
+    if timing.latest:
+        fixed, constant = timing.earliest == timing.latest, conditions.constant_delay_key
+        how = "fixed" if fixed else "range" if constant is None else "constant"
+        earliest = not fixed and exact_text(timing.earliest)
+        yield assume(f"command-age.{how}", earliest=earliest, late=exact_text(timing.latest))
+    if plant.drive is not None and plant.drive.speed is not None:
+        # The velocity jumps when a command takes effect.
+        yield assume("command-age.before")
+    least, most = sampling.delay
+    how, oldest = "fixed" if most else "now", f"{most} sample{'s' * (most != 1)}"
+    if least < most:
+        yield assume("sample-age.range", least=least, most=oldest)
+    else:
+        yield assume(f"sample-age.{how}", most=oldest)
+    but = "constant" if any(r.is_constant for e in environments for r in e.ranges) else ""
+    yield from _assume_motor(plant, loop, axis, but)
+    if disturbed:
+        yield assume("friction.period")
+        yield assume("at-samples.force")
+    placed = loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL)
+    yield assume(
+        "inputs.sampled",
+        beyond=beyond,
+        inputs="position" if placed else "velocity",
+        place=placed and "position",
+        rest="contact" if loss is Loss.SURFACE else "always",
+    )
+    if any(c.law.spring for c in design.controllers):
+        shared = "spring.shared" if program.idle is None else "spring.idle"
+        velocity = program.step.takes is Takes.VELOCITY
+        yield from map(assume, ["spring.measured"] if velocity else [shared, "spring.sample"])
+    yield from _assume_positions(program, design, reset=reset)
+    yield UNCOUPLED
+    yield from _assume_contacts(design)
+    yield _assume_tissue(environments, axis)
+    for e in environments:
+        yield from e.law.assumptions(e.name, alone=len(environments) == 1)
+    # For contact loss at the surface, each statement says whether it covers it.
+    if loss is Loss.BY_LAWS:
+        yield from _assume_kept_contact(design, alone=program.idle is None)
+    elif loss is not Loss.SURFACE:
+        yield assume(loss.value)
+    yield assume("at-a-switch.sampled", which="others" if reset else "all")
+    if misses is None:
+        yield from assume_rules(conditions.switching, "controller")
+    else:
+        yield assume("any-signal.in-time")
+    yield from _assume_arithmetic(conditions, program, laws, design)
+    yield assume(
+        "not-quantized.sampled",
+        beyond=beyond,
+        quantized="encoder" if conditions.sensed else "sensors",
+        saturation="left-out" if conditions.initial_force is None else "stated",
+    )
+    yield from _assume_parts(environments)
+
+
+def _assume_motor(
+    plant: Plant, loop: SampledLoop, axis: AxisType, but: str
+) -> Iterator[Assumption]:
+    """Yield the model of the motor, or of the robot, and its load; `but` says what is constant."""
+    ranges, inertia = plant.actuator_ranges, plant.load_inertia
+    drive = plant.drive
+    numbers = (ranges.gain, ranges.time_constant) if drive is None else drive.ranges.values()
+    # Parameters change at samples only.
+    moves = f"{how}-sampled" if (how := moving(numbers)) else ""
+    motor = ranges.assumed(axis) | {"moving": moves}
+    if drive is not None and drive.takes is Takes.TORQUE:
+        J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
+        B = f"{drive.ranges['B'].text} {axis.unit('N*m*s/rad')}"
+        yield assume("motor.torque", J=J, B=B, moving=moves, but=but)
+    elif drive is not None and "tau" in drive.ranges:
+        tau = f"{drive.ranges['tau'].text} s"
+        yield assume("motor.followed-position", tau=tau, moving=moves)
+    elif drive is not None:
+        yield assume("motor.followed-function", what=drive.takes)
+    elif plant.slowed:
+        yield assume("motor.loaded", **motor)
+    else:
+        known = ranges.time_constant.low == ranges.time_constant.high
+        varies = loop.calendar.timing.varies
+        motor["corner"] = "times" if varies else "point" if known else "motor"
+        if loop.program.step.streams:
+            del motor["gain"]
+            yield assume("motor.followed", **motor)
+        else:
+            yield assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
+    if not plant.held.loaded:
+        yield assume("unloaded.sampled")
+    elif drive is None and inertia is not None:
+        weight = f"{exact_text(inertia)} {axis.unit('kg*m^2')}"
+        yield assume("load.sampled", inertia=weight, but=but)
+
+
+def _assume_positions(
+    program: SampledProgram, design: ControllerDesign, *, reset: bool
+) -> Iterator[Assumption]:
+    """Yield the behaviour of position and force controllers, and of idle states."""
+    laws = [c.law for c in design.controllers]
+    moving = [law for law in laws if law.commands == "velocity"]
+    if len(moving) == len(laws):
+        return
+    streams = program.step.streams
+    yield assume(f"rest-position.{'streamed' if streams else 'sampled'}")
+    if streams and program.idle is not None:
+        yield assume("rest-position.streamed-beside")
+    if not all(c.contacts for c in design.controllers):
+        yield assume("contacts.in-position")
+    yield from map(assume, dict.fromkeys(law.sampled for law in laws if law.sampled))
+    if program.idle is None:
+        return
+    decay = exact_decimal(program.idle)
+    others = _names(law for law in laws if not law.bleeds)
+    if others and any(law.bleeds for law in laws):
+        yield assume("idle.sampled-bleeding", others=others, decay=decay)
+    if moving:
+        left = "all" if any(law.states for law in moving) else "reference"
+        yield assume("idle.sampled", left=left, decay=decay)
+        if reset:
+            yield assume("at-a-switch.sampled-zeroed")
+
+
+def _assume_arithmetic(
+    conditions: OperatingConditions,
+    program: SampledProgram,
+    laws: Mapping[str, DiscreteLaw],
+    design: ControllerDesign,
+) -> Iterator[Assumption]:
+    """Yield the coefficients of the program, and its roundings."""
+    step, known = program.step, program.listed.law.coefficient
+    gains = {} if step.takes else {"Kp": step.Kp, "Kd/T": step.D}
+    gains |= {
+        f"{symbol} of {name}": number
+        for name, law in laws.items()
+        for key, (symbol, number) in zip(law.numbers, law.coefficients.items(), strict=True)
+        if key in known
+    }
+    texts = tuple(f"{name} = {exact_decimal(number)}" for name, number in gains.items())
+    yield assume("numbers.coefficients", coefficients=texts)
+    if not design.takes:
+        yield from _assume_command_unit(design.command, conditions.axis)
+    counts = tuple(f"{name} {count}" for name, count in program.counts.items())
+    yield assume("arithmetic.rounding", counts=counts)
+    if (angle := conditions.largest_angle) is None:
+        yield assume("arithmetic.angles-left-out")
+    else:
+        largest = rounded_down(angle, conditions.axis.unit("rad"))
+        yield assume("arithmetic.angles", largest=largest)
+
+
+def _assume_contacts(design: ControllerDesign) -> Iterator[Assumption]:
+    """Yield the environments that each controller may contact."""
+    for c in design.controllers:
+        if c.contacts:
+            yield assume("contacts.controller", controller=c.name, contacts=tuple(c.contacts))
+
+
+def _assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
+    """Yield the assumptions about environments in simultaneous contact."""
+    for e in environments:
+        if e.parts:
+            how = "contacts.one-side" if e.each_losable else "contacts.at-once"
+            yield assume(how, environment=e.name, parts=tuple(part.name for part in e.parts))
+
+
+def _assume_tissue(
+    environments: Sequence[Environment], axis: AxisType, name: str = "tissue.linear"
+) -> Assumption:
+    """Return the parameter ranges of the environments."""
+    ranges = [
+        f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
+        for e in environments
+        for symbol, interval, unit in zip(
+            e.law.parameters(), e.ranges, e.law.units(rotational=True), strict=True
+        )
+    ]
+    return assume(name, ranges=tuple(ranges))
+
+
+def _assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
+    """Yield the assumption of each control law about contact.
+
+    `alone`: all controllers give the motion loop the same kind of command.
+    """
+    used = {controller.law.name for controller in design.controllers}
+    laws = [law for name, law in LAWS.items() if name in used]
+    # Among velocity commands alone there is no mode of free motion.
+    ids = ("never" if alone and a.commands == "velocity" else a.contact_kept for a in laws)
+    yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
+
+
+def _assume_command_unit(command: str, axis: AxisType) -> Iterator[Assumption]:
+    """Yield the unit of the motor command, if it is not rpm."""
+    if command != THESIS_COMMAND:
+        yield assume(COMMAND_UNIT, unit=command, per=axis.unit("rad"))

@@ -120,7 +120,7 @@ def _simulate(
 
 def _usual(spec: InteractionDesignSpec, scenario: Scenario) -> str:
     """Return the engine for a scenario: a law of tissue that is not linear has no exponential."""
-    nonlinear = any(not surface.is_linear for surface in scenario.surfaces)
+    nonlinear = any(surface.element is None for surface in scenario.surfaces)
     return "sampled" if spec.sampling is not None or nonlinear else "exact"
 
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.models.contact.environment import Environment
-from nrs_design.models.contact.law import AbstractContactLaw, Element
+from nrs_design.models.contact.law import AbstractNonlinearLaw, Element
 from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.build_control import build_control
 from nrs_design.simulation.scenario import Errors, Profile, Scenario, Surface
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.scenarios import (
     LONGEST,
     CommandProfileSpec,
@@ -78,7 +75,9 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
     times, shares = np.array(_SHAPE).T
     touched = [name for name in spec.environments if name in spec.touched]
     at = largest * _AWAY
-    surfaces = tuple(_touched(spec, plant, name, at, 1, "nominal") for name in touched[:1])
+    surfaces = tuple(
+        Surface(name, _law(spec, plant, name, "nominal"), at, 1) for name in touched[:1]
+    )
     profile = Profile.through(times, shares * largest)
     control, wanted = build_control(spec, None, surfaces), spec.limits.torque.si
     return Scenario(DEFAULT, profile, float(times[-1]), surfaces, control, wanted_torque=wanted)
@@ -135,21 +134,8 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
 
 
 def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
-    sign = 1 if written.side == "above" else -1
-    found = _touched(spec, plant, written.environment, written.at.si, sign, written.parameters)
-    pick = _PICKS[written.parameters]
-    elements = (
-        _law(spec.environments[name], plant.environment(name), pick)[1] for name in written.beside
-    )
-    arms = tuple(element for element in elements if element is not None)
-    return replace(found, arms=arms, beside=written.beside)
-
-
-def _touched(
-    spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
-) -> Surface:
-    law, element = _law(spec.environments[name], plant.environment(name), _PICKS[end])
-    return Surface(name, law, element, at, sign)
+    sign, name = 1 if written.side == "above" else -1, written.environment
+    return Surface(name, _law(spec, plant, name, written.parameters), written.at.si, sign)
 
 
 _PICKS: Mapping[str, Pick] = {
@@ -160,13 +146,13 @@ _PICKS: Mapping[str, Pick] = {
 
 
 def _law(
-    written: EnvironmentSpec, environment: Environment, pick: Pick
-) -> tuple[AbstractContactLaw, Element | None]:
-    """Return the law with every parameter picked from its range; only a linear one has parts."""
+    spec: InteractionDesignSpec, plant: Plant, name: str, end: str
+) -> Element | AbstractNonlinearLaw:
+    """Return the law of an environment with every parameter picked from its range."""
+    environment, pick = plant.environment(name), _PICKS[end]
     if environment.nonlinear is not None:
-        return environment.nonlinear.drawn(written.drawn_at_pivot(pick)), None
-    law = environment.law(*(pick(interval) for interval in environment.ranges))
-    return law, law.element
+        return environment.nonlinear.drawn(spec.environments[name].drawn_at_pivot(pick))
+    return environment.law(*(pick(interval) for interval in environment.ranges)).element
 
 
 def _errors(written: ErrorsSpec | None) -> Errors:

@@ -23,8 +23,8 @@ INPUTS = (Signal("hand", "rad/s"),)
 
 # A controller that is left sooner has chattered, in s.
 CHATTER = 0.01
-# Steps of an engine, and events, after which a run is stopped.
-MAX_STEPS, MAX_EVENTS = 5_000_000, 200_000
+# Steps of an engine after which a run is stopped, and steps between two reports of progress.
+MAX_STEPS, PROGRESS_STEPS = 5_000_000, 20_000
 # Steps of the exact engine that one event costs.
 EVENT_STEPS = 250
 

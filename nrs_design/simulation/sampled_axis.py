@@ -21,7 +21,7 @@ from nrs_design.controllers.replica import StepProgram
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress
 from nrs_design.simulation.motor import DrivenJoint, Motor
-from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
+from nrs_design.simulation.run import INPUTS, OUTPUTS, PROGRESS_STEPS, Run
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
@@ -32,8 +32,6 @@ from nrs_design.spec.sampling import SamplingSpec
 PARTS = 8
 # Probability of a miss where the rule allows one.
 MISSED = 0.5
-# Samples between two progress reports.
-_OFTEN = 20_000
 # States of the motion loop; all others belong to the outer loop.
 _OF_MOTION = frozenset({"error_before"})
 
@@ -140,7 +138,7 @@ class SampledAxis:
         for k, (t, following, *sample) in enumerate(rows):
             self.sample(t, *sample)
             self.move(following - t)
-            if k % _OFTEN == 0:
+            if k % PROGRESS_STEPS == 0:
                 tell(f"{t:.3g} s")
         return Run(
             self.scenario.name,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.models.contact.law import AbstractContactLaw, Element
+from nrs_design.models.contact.law import AbstractNonlinearLaw, Element
 
 Array = NDArray[np.float64]
 
@@ -83,24 +83,15 @@ class Surface:
     """Where an environment begins; it pushes and never pulls."""
 
     environment: str  # Its name
-    law: AbstractContactLaw  # At the pivot, at fixed parameters
-    # Springs and dampers of the law; None for a nonlinear law.
-    element: Element | None
+    # At the pivot, at fixed parameters: springs and dampers of a linear law, or a nonlinear one.
+    law: Element | AbstractNonlinearLaw
     at: float  # Angle in rad
     sign: int  # 1 if rising angles lead into it, else -1
-    # Further parts of the same body: the sum of all forces pushes.
-    arms: tuple[Element, ...] = ()
-    beside: tuple[str, ...] = ()  # The environments of these, in their order
 
     @property
-    def elements(self) -> tuple[Element, ...]:
-        """Springs and dampers of the body; none for a nonlinear law."""
-        return () if self.element is None else (self.element, *self.arms)
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the exact engine knows it."""
-        return self.element is not None and not self.arms
+    def element(self) -> Element | None:
+        """Springs and dampers of a linear law, which alone the exact engine knows."""
+        return self.law if isinstance(self.law, Element) else None
 
 
 @dataclass(frozen=True, slots=True)

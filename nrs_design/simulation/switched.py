@@ -90,12 +90,14 @@ def mode_eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
     return [np.asarray(np.linalg.eigvals(A), np.complex128) for A in mode_matrices(system)]
 
 
+def all_modes(system: SwitchedSystem) -> SwitchedSystem:
+    """Return a system of all modes, in contact and in free motion."""
+    if system.contact is None:
+        return system
+    return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
+
+
 def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
     kept = system.modes[mode]
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
-
-
-def sampling_instants(step: float, steps: int) -> Array:
-    """Return sampling instants from zero; shape (steps + 1,)."""
-    return np.asarray(step * np.arange(steps + 1), dtype=float)

@@ -121,12 +121,6 @@ class SurfaceSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = required("name of the environment")
-    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = optional(
-        "linear environments that are one body with it, of the same parameters: "
-        "forces add up, and only their sum does not pull. An elastic one with maxwell ones beside "
-        "it is a Prony series",
-        (),
-    )
     at: field.SignedAngle = required("angle of its surface in rad")
     side: Literal["above", "below"] = optional(
         "above: met by rising angles; below: by falling ones", "above"

@@ -51,6 +51,10 @@ class Element:
     h: float = 0.0
     b: float = math.inf
 
+    def push(self, deflection: float, velocity: float) -> float:
+        """Return ``k delta + c delta'`` in N (N m), of the deflection beyond d."""
+        return self.k * deflection + self.c * velocity
+
 
 @dataclass(frozen=True)
 class AbstractContactLaw(ABC):

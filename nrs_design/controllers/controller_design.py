@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from nrs_design.axis import AxisType
-from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
+from nrs_design.controllers.laws import LAWS, AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
 
@@ -101,11 +101,22 @@ class ControllerDesign:
         return f"the controllers keep different states of their own ({found})"
 
     @property
-    def units(self) -> dict[str, Mapping[str, str]]:
-        """The units of all gains, by the names of `laws`; the motion gains make commands."""
-        motion, unit = self.motion.units_in(self.command), self.axis.unit
-        each = {name: law.units for name, law in self.laws.items()} | {self.motion.name: motion}
-        return {
-            name: {key: unit(each[name][key]) for key in law.gains}
-            for name, law in self.laws.items()
-        }
+    def units(self) -> dict[str, dict[str, str]]:
+        """The units of all gains, by the names of `laws`."""
+        gains = {name: law.gains for name, law in self.laws.items()}
+        return units_of(gains, self.command, self.axis)
+
+
+def units_of(
+    gains: Mapping[str, Collection[str]], command: str, axis: AxisType
+) -> dict[str, dict[str, str]]:
+    """Return the units of gains by the names of `ControllerDesign.laws`.
+
+    `command` is the unit of the commands that the motor takes, which the motion gains make.
+    """
+    units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
+    motion, pd = ProportionalDerivative.units_in(command), ProportionalDerivative.name
+    return {
+        name: {gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in own}
+        for name, own in gains.items()
+    }

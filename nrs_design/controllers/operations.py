@@ -101,33 +101,22 @@ class StepLaw:
 
     def __post_init__(self) -> None:
         """Refuse a list that does not fit together."""
-        self._check_operations()
-        if set(self.following) != {state.name for state in self.states}:
-            raise ValueError("every state needs the value that follows it, and nothing else")
-        results = {operation.name for operation in self.operations}
-        if not {*self.outputs.values(), *self.following.values()} <= results:
-            raise ValueError("an output, or the next state, is not computed")
-        self._check_numbers()
-
-    def _check_operations(self) -> None:
-        known = {value.name for value in self.values}
-        constants = {c.name for c in self.coefficients}
-        names = [*(value.name for value in self.values), *(c.name for c in self.coefficients)]
+        known, constants = {value.name for value in self.values}, {*self.coefficient}
         for operation in self.operations:
             lefts = constants if operation.kind in WITH_COEFFICIENT else known
             if operation.left not in lefts or operation.right not in known:
                 raise ValueError(f"{operation.name} is computed from what is not there")
             known.add(operation.name)
-            names.append(operation.name)
-        if len({*names}) != len(names):
+        parts = (self.values, self.coefficients, self.operations)
+        if len(known | constants) != sum(map(len, parts)):
             raise ValueError("a name occurs twice")
-
-    def _check_numbers(self) -> None:
-        numbers = [
-            *(n for c in self.coefficients for n in c.values),
-            *(v.limit for v in self.values),
-        ]
-        if not all(map(is_float32, numbers)):
+        if set(self.following) != {state.name for state in self.states}:
+            raise ValueError("every state needs the value that follows it, and nothing else")
+        results = {operation.name for operation in self.operations}
+        if not {*self.outputs.values(), *self.following.values()} <= results:
+            raise ValueError("an output, or the next state, is not computed")
+        numbers = (n for c in self.coefficients for n in c.values)
+        if not all(map(is_float32, (*numbers, *(value.limit for value in self.values)))):
             raise ValueError("a coefficient or a limit is no single-precision number")
         if any(len(c.values) not in (1, len(self.modes)) for c in self.coefficients):
             raise ValueError("a coefficient has a number for some modes only")

@@ -1,7 +1,6 @@
 """The exact engine against closed forms, and against an integrator that knows nothing of it."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -160,7 +159,7 @@ def test_what_runs_without_an_offset_is_what_is_proved():
     spec = parse_spec(text_of(PLACED, scenario=FREE))
     plant = build_plant(spec)
     design = design_controllers(spec, plant)
-    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
+    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"])
     touching = replace(scenario, surfaces=default_scenario(spec, plant).surfaces)
     loop = Loop(spec, plant, design, touching)
     proved = {mode.name: mode.A for mode in assemble(spec, plant, design).modes}
@@ -305,7 +304,7 @@ def test_a_budget_of_steps_is_one_of_events():
 def test_a_logic_that_asks_for_two_at_one_instant_is_stopped():
     spec = parse_spec(text_of(scenario=FREE))
     plant = build_plant(spec)
-    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
+    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"])
     out = (Condition("command", low=0.01),)
     both = (Switch("insertion", "withdrawal", out), Switch("withdrawal", "insertion", out))
     scenario = replace(scenario, control=Control("insertion", both))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 
 from nrs_design.models.contact.law import AbstractNonlinearLaw, Element
@@ -16,11 +14,10 @@ from nrs_design.spec.scenarios import (
     CommandProfileSpec,
     ErrorsSpec,
     ScenarioSpec,
-    SurfaceSpec,
 )
 
-Pick = Callable[[Interval], float]
-
+# Ends of an interval, as surfaces name them.
+_ENDS = {"nominal": "nominal", "lowest": "low", "highest": "high"}
 DEFAULT = "insertion-and-withdrawal"
 # Thesis fig. 6.7 and 6.11: in free space to the largest command, down, again in contact, and out.
 _SHAPE = ((0.0, 0.0), (1.0, 1.0), (2.0, 0.25), (3.0, 1.0), (4.0, 0.0), (5.0, -1.0), (6.0, -1.0),
@@ -34,7 +31,10 @@ def build_scenario(
 ) -> Scenario:
     """Convert a scenario to SI."""
     wanted = spec.limits.torque if scenario.wanted_torque is None else scenario.wanted_torque
-    surfaces = tuple(_surface(spec, plant, written) for written in scenario.surfaces)
+    surfaces = tuple(
+        _surface(spec, plant, s.environment, s.at.si, 1 if s.side == "above" else -1, s.parameters)
+        for s in scenario.surfaces
+    )
     assert scenario.length is not None  # the spec says it
     return Scenario(
         name,
@@ -44,7 +44,7 @@ def build_scenario(
         build_control(spec, scenario.control, surfaces),
         0.0 if scenario.start is None else scenario.start.si,
         wanted.si,
-        _errors(scenario.errors),
+        Errors() if scenario.errors is None else _errors(scenario.errors),
         scenario.seed,
         {} if scenario.limits is None else {n: q.si for n, q in scenario.limits.named.items()},
     )
@@ -56,9 +56,7 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
     times, shares = np.array(_SHAPE).T
     touched = [name for name in spec.environments if name in spec.touched]
     at = largest * _AWAY
-    surfaces = tuple(
-        Surface(name, _law(spec, plant, name, "nominal"), at, 1) for name in touched[:1]
-    )
+    surfaces = tuple(_surface(spec, plant, name, at, 1, "nominal") for name in touched[:1])
     profile = Profile.through(times, shares * largest)
     control, wanted = build_control(spec, None, surfaces), spec.limits.torque.si
     return Scenario(DEFAULT, profile, float(times[-1]), surfaces, control, wanted_torque=wanted)
@@ -74,35 +72,24 @@ def _profile(command: CommandProfileSpec) -> Profile:
     return Profile.through(times, velocities)
 
 
-def _surface(spec: InteractionDesignSpec, plant: Plant, written: SurfaceSpec) -> Surface:
-    sign, name = 1 if written.side == "above" else -1, written.environment
-    return Surface(name, _law(spec, plant, name, written.parameters), written.at.si, sign)
+def _surface(
+    spec: InteractionDesignSpec, plant: Plant, name: str, at: float, sign: int, end: str
+) -> Surface:
+    """Return an environment with every parameter at the same end of its range."""
 
+    def pick(interval: Interval) -> float:
+        return float(getattr(interval, _ENDS[end]))
 
-_PICKS: Mapping[str, Pick] = {
-    "nominal": lambda interval: float(interval.nominal),
-    "lowest": lambda interval: float(interval.low),
-    "highest": lambda interval: float(interval.high),
-}
-
-
-def _law(
-    spec: InteractionDesignSpec, plant: Plant, name: str, end: str
-) -> Element | AbstractNonlinearLaw:
-    """Return the law of an environment with every parameter picked from its range."""
-    environment, pick = plant.environment(name), _PICKS[end]
+    environment = plant.environment(name)
+    law: Element | AbstractNonlinearLaw
     if environment.nonlinear is not None:
-        return environment.nonlinear.drawn(spec.environments[name].drawn_at_pivot(pick))
-    return environment.law(*(pick(interval) for interval in environment.ranges)).element
+        law = environment.nonlinear.drawn(spec.environments[name].drawn_at_pivot(pick))
+    else:
+        law = environment.law(*map(pick, environment.ranges)).element
+    return Surface(name, law, at, sign)
 
 
-def _errors(written: ErrorsSpec | None) -> Errors:
-    if written is None:
-        return Errors()
-    values = {
-        name: getattr(written, name).si
-        for name in ("friction", "encoder_step", "force_step", "force_noise")
-        if getattr(written, name) is not None
-    }
-    jitter = 0.0 if written.jitter is None else float(written.jitter)
-    return Errors(**values, jitter=jitter)
+def _errors(written: ErrorsSpec) -> Errors:
+    given = {name: value for name, value in written if value is not None}
+    jitter = float(given.pop("jitter", 0.0))
+    return Errors(**{name: quantity.si for name, quantity in given.items()}, jitter=jitter)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,20 +51,15 @@ class Profile:
     def through(cls, times: Array, velocities: Array) -> Profile:
         """Return straight lines between points, in s and rad/s; the last velocity is kept.
 
-        Twice the same time is a jump. A ValueError if the times do not begin at zero or fall, or a
-        number is not finite.
+        Times rise from zero; twice the same one is a jump.
         """
-        if not (np.isfinite(times).all() and np.isfinite(velocities).all()):
-            raise ValueError("a time or a velocity is not a finite number")
-        if times[0] != 0 or (np.diff(times) < 0).any():
-            raise ValueError("times begin at zero and never fall")
-        pieces = []
-        for i, (time, value) in enumerate(zip(times.tolist(), velocities.tolist(), strict=True)):
-            step = times[i + 1] - time if i + 1 < len(times) else math.inf
-            if step > 0:
-                slope = 0.0 if math.isinf(step) else float(velocities[i + 1] - value) / float(step)
-                pieces.append(Piece(time, value, slope))
-        return cls(tuple(pieces))
+        points = zip(times.tolist(), velocities.tolist(), strict=True)
+        pieces = [
+            Piece(time, value, (further - value) / (end - time))
+            for (time, value), (end, further) in pairwise(points)
+            if end > time
+        ]
+        return cls((*pieces, Piece(float(times[-1]), float(velocities[-1]), 0.0)))
 
     def at(self, time: Array) -> Array:
         """Return the velocity at times in s, after jumps."""

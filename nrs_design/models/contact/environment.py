@@ -93,14 +93,14 @@ class Environment:
             parts = tuple(part.scaled(scale) for part in self.parts)
             return touch_at_once(parts, losable=self.each_losable)
         ranges = tuple(interval.scaled(scale) for interval in self.ranges)
-        for index, interval in enumerate(ranges):
-            if self.law.admits(index, interval.low):
-                continue
-            raise AssemblyError(
-                f"with its ranges scaled by {float(scale):.6g}, environment {self.name} reaches a "
-                f"{self.law.kinds[index]} {self.law.forbidden(index)}",
-                remedy="scale the ranges by less",
-            )
+        each = zip(self.law.parameters(), self.law.kinds, ranges, strict=True)
+        for parameter, kind, interval in each:
+            if fault := self.law.find_fault(parameter, interval.low):
+                raise AssemblyError(
+                    f"with its ranges scaled by {float(scale):.6g}, environment {self.name} "
+                    f"reaches a {kind} {fault}",
+                    remedy="scale the ranges by less",
+                )
         return replace(self, ranges=ranges)
 
 
@@ -125,8 +125,5 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
 
 
 def _sum(intervals: Sequence[Interval]) -> Interval:
-    return Interval(
-        sum((i.nominal for i in intervals), Fraction(0)),
-        sum((i.low for i in intervals), Fraction(0)),
-        sum((i.high for i in intervals), Fraction(0)),
-    )
+    ends = ((i.nominal, i.low, i.high) for i in intervals)
+    return Interval(*(sum(each, Fraction(0)) for each in zip(*ends, strict=True)))

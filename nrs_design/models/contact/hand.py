@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
@@ -56,10 +55,6 @@ class Hand(AbstractMemorylessLaw):
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
     m: Number  # Mass in kg (kg m^2); may be zero
-
-    def at_stiffness(self, value: Fraction) -> Hand:
-        """Return it with the same damping and mass."""
-        return Hand(value, self.b, self.m)
 
     @property
     def is_spring(self) -> bool:

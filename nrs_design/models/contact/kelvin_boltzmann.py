@@ -90,19 +90,15 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
         The law is a spring eta1 beside a Maxwell element with stiffness ``k2 - eta1``.
         """
-        from nrs_design.models.contact.relaxation import Relaxation
-
         eta1, _, eta3 = self.eta
-        return eta1 * motion.deflection + (float(self.k2) - eta1) * Relaxation(motion, eta3).y
+        return eta1 * motion.deflection + (float(self.k2) - eta1) * motion.relaxed(eta3).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k1, log k2 and log b, shape (n, 3)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import Relaxation
-
         eta1, _, eta3 = self.eta
-        relaxed = Relaxation(motion, eta3)
+        relaxed = motion.relaxed(eta3)
         y, slope = relaxed.y, relaxed.slope
         arm = float(self.k2) - eta1
         # By log eta1, log arm and log eta3, and then by the chain rule.
@@ -114,10 +110,8 @@ class KelvinBoltzmann(AbstractLinearLaw):
     @classmethod
     def guesses(cls, motion: Motion, solve: Solve) -> Iterator[KelvinBoltzmann]:
         """Yield the best law for each of some time constants."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
         for tau in motion.time_constants.tolist():
-            eta1, arm = solve(motion.deflection, Relaxation(motion, tau).y)
+            eta1, arm = solve(motion.deflection, motion.relaxed(tau).y)
             yield cls.from_eta(eta1, (eta1 + arm) * tau, tau)
 
     @classmethod

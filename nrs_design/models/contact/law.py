@@ -270,15 +270,12 @@ class AbstractLinearLaw(AbstractContactLaw):
         return tuple(_UNITS[kind][rotational] for kind in cls.kinds)
 
     @classmethod
-    def admits(cls, index: int, value: Number) -> bool:
-        """Tell whether a parameter, by its place, may have a value."""
-        positive = value > 0 or (value == 0 and cls.forbidden(index) == "< 0")
-        return positive and math.isfinite(value)
-
-    @classmethod
-    def forbidden(cls, index: int) -> str:
-        """Return which values a parameter, by its place, may not have."""
-        return "< 0" if cls.parameters()[index] in cls.may_vanish else "<= 0"
+    def find_fault(cls, parameter: str, value: Number) -> str | None:
+        """Return which values a parameter may not have, if this is one of them."""
+        vanishes = parameter in cls.may_vanish
+        if math.isfinite(value) and (value > 0 or (vanishes and value == 0)):
+            return None
+        return "< 0" if vanishes else "<= 0"
 
     def given(self) -> dict[str, str | float]:
         """Return the law and its parameters by the keys of a spec."""
@@ -306,6 +303,15 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
         """``(m s^2 + b s + k) / s``, without the powers that are absent."""
         numerator = (0.0,) * (2 - len(self.values)) + self.values[::-1]
         return numerator, (0.0,) * (len(numerator) - 2) + (1.0, 0.0)
+
+    def at_stiffness(self, value: Fraction) -> Self:
+        """Return it with the same damping and mass."""
+        return type(self)(value, *astuple(self)[1:])
+
+    @property
+    def element(self) -> Element:
+        """The spring, and the damper beside it."""
+        return Element(*self.values)
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k delta + b v`` and ``delta' = v``."""

@@ -64,27 +64,21 @@ class Maxwell(AbstractLinearLaw):
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
-        return float(self.k) * Relaxation(motion, self.relaxation_time).y
+        return float(self.k) * motion.relaxed(self.relaxation_time).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k and log b, shape (n, 2)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import Relaxation
-
-        relaxed = Relaxation(motion, self.relaxation_time)
+        relaxed = motion.relaxed(self.relaxation_time)
         y, slope = relaxed.y, relaxed.slope
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
 
     @classmethod
     def guesses(cls, motion: Motion, solve: Solve) -> Iterator[Maxwell]:
         """Yield the best law for each of some time constants."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
         for tau in motion.time_constants.tolist():
-            (k,) = solve(Relaxation(motion, tau).y)
+            (k,) = solve(motion.relaxed(tau).y)
             yield cls(k, k * tau)
 
     @classmethod

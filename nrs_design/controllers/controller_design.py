@@ -11,7 +11,7 @@ from nrs_design.controllers.laws import LAWS, AbstractLaw, CompliantLaw, Proport
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
 
-# What lets the modes of all controllers share one state.
+# Remedy for modes that share no state.
 SHARED_STATES = "give all impedance controllers a virtual inertia Mt > 0, or none of them"
 
 
@@ -31,7 +31,7 @@ class Controller:
     name: str  # As in the spec
     law: CompliantLaw  # Its law with the gains that ship
     environment: str | None  # The environment that it was designed for
-    # The environments that it may touch while it is active; empty for position control.
+    # Environments in contact with the active controller; empty for position control.
     contacts: tuple[str, ...]
     # Gains of the search before rounding. Equality of controllers ignores them.
     optimum: ImpedanceOptimum | None = field(default=None, compare=False)
@@ -43,7 +43,7 @@ class ControllerDesign:
 
     motion: ProportionalDerivative  # The motion controller below the compliant ones
     controllers: tuple[Controller, ...]  # In the order of the spec
-    sensor: Sensor = field(default_factory=Sensor)  # Of the force that they act on
+    sensor: Sensor = field(default_factory=Sensor)  # Force sensor of all controllers
     command: str = "rpm"  # Unit of the commands that the motor takes
     axis: AxisType = AxisType.ROTARY  # Whose units the gains have
 

@@ -22,7 +22,7 @@ def to_float32(value: Fraction) -> Fraction:
 
 
 def _rounded(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
-    """Return a whole number of the steps between single-precision numbers as large as a value."""
+    """Return a neighbor of a value in single precision; `whole` picks which."""
     exponent = value.numerator.bit_length() - value.denominator.bit_length()
     if abs(value) < Fraction(2) ** exponent:
         exponent -= 1

@@ -107,7 +107,7 @@ def _check_near(
 
 
 def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
-    """Return gains with those that `design.free` names as the spec gives them, if it does.
+    """Return gains with the free ones at the values of the spec, as far as it has any.
 
     A `CertificateError` if one is farther from that than its factors allow.
     """
@@ -164,7 +164,7 @@ def idle_decay(idle: IdleStatesSpec) -> Fraction:
 
 
 def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
-    """Return what a period in s leaves of idle states: a single-precision number, too."""
+    """Return the share of idle states after a period in s: a single-precision number."""
     return to_float32(exponential_between(-idle_decay(idle) * period)[0])
 
 

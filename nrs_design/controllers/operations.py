@@ -23,7 +23,7 @@ V = TypeVar("V")
 # value the next operations take (`own`); in proportion to the largest angle (`angle`).
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
-# Of these, the left operand is a coefficient.
+# Kinds with a coefficient for the left operand.
 WITH_COEFFICIENT: frozenset[Kind] = frozenset({"multiply", "saturate"})
 
 
@@ -37,7 +37,7 @@ class Value:
     limit: Fraction  # A single-precision number; beyond it, or not a number, the value is refused
     meaning: str  # In words
     rounding: Rounding = "none"  # Rounding of the reading
-    # Whether a state is the measured angle at first; others are zero.
+    # The first value of a state is the measured angle, else zero.
     starts_at_angle: bool = False
     stored: str = ""  # As modes call a state that matters to stability, with its unit
 
@@ -62,7 +62,7 @@ class Coefficient:
         return self.values[mode if self.by_mode else 0]
 
     def symbol_in(self, mode: int) -> str:
-        """Return what terms call it in a mode."""
+        """Return the name in terms of a mode."""
         return self.symbols[mode] if self.symbols else self.symbol
 
 
@@ -70,15 +70,15 @@ class Coefficient:
 class Operation:
     """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient."""
 
-    name: str  # Of the result
+    name: str  # Name of the result
     # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
     # ``saturate``: right within plus and minus a coefficient.
     kind: Kind
     # left, right: names of values, of coefficients, or of results of operations before.
     left: str
     right: str
-    rounding: Rounding = "term"  # How its rounding counts
-    symbol: str = ""  # As terms call the result; by default they write it out
+    rounding: Rounding = "term"  # Kind of rounding
+    symbol: str = ""  # Name of the result in terms; by default the whole expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +96,8 @@ class StepLaw:
     operations: tuple[Operation, ...]  # In the order in which they are computed
     outputs: Mapping[str, str]  # Outputs, and the results that they are; ``units`` has their units
     following: Mapping[str, str]  # Every state, and the result that it has after the step
-    units: Mapping[str, str]  # Of the outputs
-    logic: StepLogic | None = None  # What chooses the mode, where the spec says it
+    units: Mapping[str, str]  # Units of the outputs
+    logic: StepLogic | None = None  # Mode logic of the spec, if any
 
     def __post_init__(self) -> None:
         """Refuse a list that does not fit together."""

@@ -39,7 +39,7 @@ class Term:
 
     name: str  # Such as ``b F``
     form: LinearForm  # Value without rounding, over the state
-    roundings: int  # In how many it takes part
+    roundings: int  # Number of roundings of the term
 
     def times(self, factor: Fraction, prefix: str, more: int) -> Term:
         """Return the term times a single-precision factor, which is named in front.

@@ -28,14 +28,14 @@ GAIN = "Km"
 
 
 class Takes(StrEnum):
-    """What a robot is commanded."""
+    """Kind of command of a robot."""
 
     VELOCITY = "velocity"
     POSITION = "position"
     TORQUE = "torque"
 
 
-# Units of what robots take that have no motor of the user's.
+# Units of commands to robots with drives of their own.
 COMMANDS: Mapping[Takes, str] = MappingProxyType(
     {Takes.VELOCITY: "rad/s", Takes.POSITION: "rad", Takes.TORQUE: "N*m"}
 )
@@ -81,11 +81,11 @@ class Drive:
     # [A, B] over the states and the deflection; a velocity that jumps with the command is no state.
     rates: MultiAffine
     ranges: Mapping[str, Interval]  # Ranges of the numbers in `rates`, but for the load
-    inverse: frozenset[str] = frozenset()  # Those that `rates` takes one over
-    loaded: bool = False  # Whether the environment acts on the joint, by the symbols of `LOAD`
+    inverse: frozenset[str] = frozenset()  # Symbols of numbers that `rates` inverts
+    loaded: bool = False  # The environment may act on the joint, by the symbols of `LOAD`
     # The velocity by the same states and the command, where it jumps.
     speed: MultiAffine | None = None
-    # Last state, where it is a memory of the environment.
+    # Name of the last state, if the environment has a memory.
     memory: str | None = None
 
     @property

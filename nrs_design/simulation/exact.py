@@ -192,7 +192,7 @@ class _Engine:
 
     def _command(self, piece: Piece) -> None:
         """Begin a part of the command."""
-        if abs(self.z[-3] - piece.value) > TOLERANCE:
+        if self.z[-3] != piece.value:
             self._record(self.z[None])
         self.z = np.array([*self.z[:-3], piece.value, piece.slope, 1.0])
         self._settle()

@@ -81,8 +81,13 @@ class Flow:
         """
         values = states @ self.signals.T * sides + self.tolerances
         rates = states @ self._rates.T * sides
-        across = (values[:-1] <= 0) | (values[1:] <= 0)
-        doubtful = (across | ((rates[:-1] < 0) & (rates[1:] > 0))).any(axis=1)
+        begin, end, falls, rises = values[:-1], values[1:], rates[:-1], rates[1:]
+        # Where a signal turns, it is above its tangents, which meet after this time.
+        turns = (falls < 0) & (rises > 0)
+        slopes = np.where(turns, rises - falls, 1.0)
+        meet = np.where(turns, begin - end + rises * self.h, 0.0) / slopes
+        lowest = np.minimum(np.minimum(begin, end), begin + falls * meet)
+        doubtful = (lowest <= 0).any(axis=1)
         return int(doubtful.argmax()) if doubtful.any() else len(doubtful)
 
     def first_crossing(self, z: Array, width: float, sides: Array) -> float | None:

@@ -17,7 +17,7 @@ from nrs_design.simulation.switched import SwitchedRun, expm, fine_step, mode_ma
 
 # Mode index and time spent in it, in s or steps.
 Steps = Sequence[tuple[int, float]]
-# The same of a part of a step, and the map over it.
+# Mode index and duration of a part of a step, with its map.
 _Piece = tuple[int, float, Array]
 
 _SAMPLES = 4000

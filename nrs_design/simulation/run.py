@@ -44,7 +44,7 @@ class Run:
     """A simulated scenario."""
 
     scenario: str  # Its name
-    engine: str  # What simulated it
+    engine: str  # Name of the engine
     response: TimeResponse  # Up to where the run came
     # Times in s at which a controller took over, and which.
     switches: tuple[tuple[float, str], ...]
@@ -56,7 +56,7 @@ class Run:
     refused: int = 0  # Samples that the law refused, because an input was beyond its limits
     saturated: int = 0  # Samples at which the command of the motor met its limit
     stopped: str | None = None  # Why the run ended before its time
-    left_out: tuple[str, ...] = LEFT_OUT  # What is not in it
+    left_out: tuple[str, ...] = LEFT_OUT  # Effects without a model
     outer: float | None = None  # Period of filter and admittance in s, which may be another
     missed: int | None = None  # Samples with a missed deadline; None without a rule of misses
 

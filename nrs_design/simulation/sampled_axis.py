@@ -38,14 +38,14 @@ _OF_MOTION = frozenset({"error_before"})
 
 
 class Sample(NamedTuple):
-    """What happens at a sample beside the motion of the axis."""
+    """Inputs of a sample: command, errors and delays."""
 
     time: float  # In s
     hand: float  # Commanded velocity in rad/s
     noise: float  # Error of the torque in N m
-    age: int  # Of the force sample
+    age: int  # Age of the force sample
     late: float  # From the sample to its command, in s
-    missed: bool  # Whether its deadline is missed
+    missed: bool  # True for a missed deadline
 
 
 def draw_samples(
@@ -81,7 +81,7 @@ class SampledAxis:
 
     plant: Plant  # Its motor
     design: ControllerDesign  # Gains that ship
-    scenario: Scenario  # What happens to it
+    scenario: Scenario  # Command, surfaces and errors
     program: StepProgram  # Its law
     sampling: SamplingSpec  # Period and delay of the law
     # Shortest and longest time from a sample to where its command takes effect, in s.

@@ -121,7 +121,7 @@ class Control:
     stays: Mapping[str, float] = field(default_factory=dict)
     # Times in s at which a controller takes over, whatever signals say.
     schedule: tuple[tuple[float, str], ...] = ()
-    # Whether it is the mode logic of the spec, which exported programs contain.
+    # True for the mode logic of the spec, as in exported programs.
     ships: bool = False
 
 
@@ -149,6 +149,6 @@ class Scenario:
     start: float = 0.0  # Angle at which the axis rests at first, in rad
     wanted_torque: float = 0.0  # Fd of force controllers in N m, towards rising angles
     errors: Errors = Errors()  # For the sampled engine
-    seed: int = 0  # Of noise, jitter and varying delay
+    seed: int = 0  # Seed of noise, jitter and varying delay
     # Limits of the run: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     limits: Mapping[str, float] = field(default_factory=dict)

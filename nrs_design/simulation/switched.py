@@ -42,7 +42,7 @@ def transition_matrices(system: SwitchedSystem, step: float) -> Array:
 
 
 def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
-    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself, shape (m,).
+    """Return the least decay of ``sqrt(x' Q x)`` in every mode alone, shape (m,).
 
     Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative where
     the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``. For figures only.

@@ -45,7 +45,7 @@ class TimeResponse:
     y: Array  # Shape (p, N). Outputs.
     x: Array  # Shape (n, N). States.
     u: Array  # Shape (m, N). Inputs.
-    # outputs, states, inputs: what the rows are.
+    # outputs, states, inputs: names and units of the rows.
     outputs: tuple[Signal, ...]
     states: tuple[Signal, ...]
     inputs: tuple[Signal, ...]

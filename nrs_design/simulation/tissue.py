@@ -12,7 +12,7 @@ from nrs_design.simulation.scenario import Surface
 class Tissue:
     """What is touched during a run."""
 
-    surfaces: tuple[Surface, ...]  # Where it begins
+    surfaces: tuple[Surface, ...]  # Positions and laws
     # Times in s at which `note` found a surface met (true) or lost, and its environment.
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
 

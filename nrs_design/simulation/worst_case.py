@@ -35,7 +35,7 @@ _CHOSEN, _KEPT, _HELD, _SWEEPS = 600, 8, 3000, 15
 # Fractions of a run after which the new choices continue it.
 _CUTS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
 _NO_GAIN = 1e-5
-# A motion has faded to a thousandth after so many time constants.
+# Time constants until a motion has faded to a thousandth.
 _FADED = 8.0
 # A mode settles if no motion of it keeps more than this share of itself in a step.
 _SETTLES = 1 - 1e-9
@@ -44,9 +44,9 @@ DEFLECTION = "deflection"
 
 @dataclass(frozen=True, eq=False)
 class WorstRun:
-    """The worst run that was found for one quantity."""
+    """The worst run found for one quantity."""
 
-    output: Output  # What was made large
+    output: Output  # The quantity
     value: float  # Its size at the end of the run
     time: Array  # Shape (K + 1,). In s.
     # Shape (K + 1, n). From rest, or settled under disturbances that were held for long.
@@ -281,7 +281,7 @@ class _Game:
     def _shown(self, output: Output, value: float, run: _Run) -> WorstRun:
         system = self.system
         if _is_free(system) and not run.state.any():
-            # It rests before anything acts.
+            # The run begins with the first disturbance.
             begun = int(run.shares.any(axis=(1, 2)).argmax())
             run = replace(run, actions=run.actions[begun:], shares=run.shares[begun:])
         states = self._play(run)[:, 0]
@@ -295,7 +295,7 @@ class _Game:
         return WorstRun(output, value, time, states, mode, run.shares[:, 0] * bounds)
 
     def _sizes(self, aim: _Aim, states: Array, modes: Indices) -> Array:
-        """Return what is wanted at states, shape (..., n), in modes, shape (...)."""
+        """Return the size of the aim at states, shape (..., n), in modes, shape (...)."""
         size = aim.sizes(states, modes).max(axis=-1)
         return np.where(self.flies(states), 0.0, size) if aim.one_sided else np.asarray(size)
 

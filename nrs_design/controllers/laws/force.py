@@ -43,7 +43,7 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         return DiscreteLaw(type(self), {"Kf": self.Kp} if self.Kp else {})
 
     def find_fault(self, given: ForceControllerSpec) -> str | None:
-        """Say if the gain is negative, or another one than the spec fixes."""
+        """Return the fault of a negative gain, or of a gain unlike the spec."""
         negative = "gain Kp is negative" if self.Kp < 0 else None
         return AbstractCompliantLaw.find_fault(self, given) or negative
 

@@ -49,7 +49,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
 
     @classmethod
     def gains_in(cls, given: ImpedanceControllerSpec) -> tuple[str, ...]:
-        """Return the names of its gains; Kt is one where the spec gives it."""
+        """Return the names of the gains; Kt needs a value in the spec."""
         return ("Mt", "Bt") if given.Kt is None else ("Mt", "Bt", "Kt")
 
     @property
@@ -162,7 +162,7 @@ def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
     if sprung:
         yield StepGain("Kt", "Kt", "N*m/rad")
     if inert:
-        # Of both states of an idle admittance, the same is left.
+        # Both states of an idle admittance keep the same share.
         yield StepGain("a", "a", "1", idle="d")
     yield StepGain("b", "b", "rad/(s*N*m)")
     yield StepGain("T", "T", "s", common=True)

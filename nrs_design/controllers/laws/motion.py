@@ -29,7 +29,7 @@ class ProportionalDerivative(AbstractLaw):
 
     @property
     def absent(self) -> bool:
-        """Whether there is none: the robot closes its own motion loop, and takes velocities."""
+        """Whether the robot closes the motion loop, and takes velocities."""
         return self.Kp == self.Kd == 0
 
     @staticmethod
@@ -47,5 +47,5 @@ class ProportionalDerivative(AbstractLaw):
         return to_float32(self.Kd / period)
 
 
-# Of a robot that closes its own motion loop.
+# Gains of a robot with a motion loop inside.
 NO_MOTION = ProportionalDerivative(Fraction(0), Fraction(0))

@@ -99,7 +99,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         return PROPORTIONAL, INTEGRAL
 
     def find_fault(self, given: IntegralControllerSpec) -> str | None:
-        """Say if the gains are not positive, or others than the spec fixes."""
+        """Return the fault of gains that are not positive, or unlike the spec."""
         if self.Kp <= 0 or self.Ki <= 0:
             return "gains Kp and Ki are not positive"
         return AbstractCompliantLaw.find_fault(self, given)

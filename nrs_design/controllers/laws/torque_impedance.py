@@ -39,7 +39,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
 
     @classmethod
     def gains_in(cls, given: TorqueImpedanceSpec) -> tuple[str, ...]:
-        """Return the names of its gains; R is one where the spec gives another than 1."""
+        """Return the names of the gains; R needs a value other than 1 in the spec."""
         return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
@@ -55,7 +55,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         if self.D:
             numbers["Kd_over_T"] = to_float32(self.D / (self.R * period))
         if self.R != 1:
-            # What is touched brakes with F, and is to brake with F/R.
+            # Contact brakes with F; the law makes F/R of it.
             numbers[FORCE_GAIN] = to_float32(1 / self.R - 1)
         return DiscreteLaw(type(self), numbers)
 

@@ -21,7 +21,7 @@ LAWS: Mapping[str, type[AbstractContactLaw]] = MappingProxyType(
     {law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)}
 )
 
-# Those of them that can enter a design and a proof.
+# Tissue laws for a design and a proof.
 TISSUE_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
     {law.name: law for law in LAWS.values() if issubclass(law, AbstractLinearLaw)}
 )

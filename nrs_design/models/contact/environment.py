@@ -24,7 +24,7 @@ class Environment:
     ranges: tuple[Interval, ...]
     # Environments that are touched at once.
     parts: tuple[Environment, ...] = ()
-    each_losable: bool = False  # Whether each part may separate on its own
+    each_losable: bool = False  # Each part may separate alone
     # Nonlinear law, which the linear one replaces within a preload.
     nonlinear: type[AbstractNonlinearLaw] | None = None
 
@@ -35,7 +35,7 @@ class Environment:
 
     @property
     def depends(self) -> bool:
-        """Whether stiffness and damping depend on each other: not every corner is attained."""
+        """Whether stiffness and damping depend on each other, so that corners may be missed."""
         return self.preloaded or (self.each_losable and bool(self.law.beside))
 
     @property

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KelvinBoltzmann(AbstractLinearLaw):
-    """A spring k2 in a row with a spring k1 beside a damper b."""
+    """A spring k2, followed by a spring k1 beside a damper b."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
@@ -116,7 +116,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
-        """Yield what the damper does at a switch, and while it is left alone."""
+        """Yield assumptions on the damper at a switch, and without contact."""
         yield Assumption.create("memory.damper", environment=environment)
         if not alone:
             yield Assumption.create("memory.creeps", environment=environment)

@@ -1,4 +1,4 @@
-"""What all laws of contact have in common.
+"""The interface of contact laws.
 
 NumPy is imported where it is used: a certificate is verified without it.
 """
@@ -65,12 +65,12 @@ class AbstractContactLaw(ABC):
     """
 
     name: ClassVar[str]
-    # What is said of no other law, by the id of its assumption.
+    # Sentences about this law alone, by the ids of assumptions.
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
     formula: ClassVar[str]
-    # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
+    # Kinds of the parameters, in order: stiffness, damping, or another kind.
     kinds: ClassVar[tuple[str, ...]]
-    # Whether the reaction takes the velocity itself, which a record has by differences only.
+    # The reaction may need the velocity, which a record has by differences only.
     takes_velocity: ClassVar[bool] = False
 
     @abstractmethod
@@ -152,11 +152,11 @@ class AbstractLinearLaw(AbstractContactLaw):
     beside: ClassVar[str] = ""
     # The states of `react`; the first is the one that all environments of a spec share.
     states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
-    # Whether the force depends on more than the deflection and the velocity of the moment.
+    # The force may depend on earlier deflections.
     remembers: ClassVar[bool] = False
-    # Whether the environment returns to where it was: a constant deflection keeps a force.
+    # The environment has a place of rest: a constant deflection keeps a force.
     has_rest: ClassVar[bool] = True
-    # Whether a mass moves with the contact, so that the force takes the acceleration.
+    # A mass may move with the contact: then the force needs the acceleration.
     has_mass: ClassVar[bool] = False
 
     def simulate(self, motion: Motion) -> Array:
@@ -199,7 +199,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @property
     def lags(self) -> bool:
-        """Whether force or memory take the velocity of the moment, too."""
+        """Whether force or memory depend on the velocity."""
         velocity, *states = coordinates(1 + len(self.states))
         force, (_, *rates) = self.react_accelerated(velocity, zero(len(velocity)), states)
         return any(form[0] for form in (force, *rates))
@@ -271,7 +271,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @classmethod
     def find_fault(cls, parameter: str, value: Number) -> str | None:
-        """Return which values a parameter may not have, if this is one of them."""
+        """Return the range of forbidden values, if it holds the value of a parameter."""
         vanishes = parameter in cls.may_vanish
         if math.isfinite(value) and (value > 0 or (vanishes and value == 0)):
             return None

@@ -83,7 +83,7 @@ class Maxwell(AbstractLinearLaw):
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
-        """Yield what is known of the deflection, which is no state."""
+        """Yield the assumption on the deflection, which is no state."""
         yield Assumption.create("memory.maxwell", environment=environment)
 
     @property

@@ -68,7 +68,7 @@ class Motion:
         return np.geomspace(2 * float(np.median(self.steps)), 5 * duration, 9)
 
     def relaxed(self, time_constant: float) -> Relaxation:
-        """Return what a spring and a damper in a row, of a time constant in s, have of it."""
+        """Return the response of a spring and a damper in a row; time constant in s."""
         from nrs_design.models.contact.relaxation import Relaxation
 
         return Relaxation(self, time_constant)

@@ -37,7 +37,7 @@ MISSED = 0.5
 _OF_MOTION = frozenset({"error_before"})
 
 
-class Sample(NamedTuple):
+class SampleInputs(NamedTuple):
     """Inputs of a sample: command, errors and delays."""
 
     time: float  # In s
@@ -50,7 +50,7 @@ class Sample(NamedTuple):
 
 def draw_samples(
     scenario: Scenario, sampling: SamplingSpec, late: tuple[float, float], count: int
-) -> list[Sample]:
+) -> list[SampleInputs]:
     """Draw so many samples from the seed of a scenario.
 
     `late` holds the times from a sample to its command, in s. Where a rule allows misses, every
@@ -72,7 +72,9 @@ def draw_samples(
             missed[k] = wanted[k] and after is not None
             state = automaton.hit[state] if after is None or not wanted[k] else after
     columns = (times, scenario.profile.at(times), noise, ages, lates, missed)
-    return [Sample(*row) for row in zip(*(column.tolist() for column in columns), strict=True)]
+    return [
+        SampleInputs(*row) for row in zip(*(column.tolist() for column in columns), strict=True)
+    ]
 
 
 @dataclass
@@ -124,7 +126,7 @@ class SampledAxis:
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
-    def run(self, samples: Sequence[Sample], stopped: str | None, tell: Progress) -> Run:
+    def run(self, samples: Sequence[SampleInputs], stopped: str | None, tell: Progress) -> Run:
         """Run all samples; `stopped` says why the run ends before its time."""
         ends = [*(sample.time for sample in samples[1:]), samples[-1].time + self.T]
         for k, (sample, end) in enumerate(zip(samples, ends, strict=True)):
@@ -147,7 +149,7 @@ class SampledAxis:
             missed=sum(s.missed for s in samples) if self.sampling.misses else None,
         )
 
-    def _take(self, sample: Sample) -> None:
+    def _take(self, sample: SampleInputs) -> None:
         """Run the law once; where the deadline is missed, its command is held or zero instead."""
         tissue, hand = self.tissue, sample.hand
         torque = tissue.torque(self.theta, self.omega)

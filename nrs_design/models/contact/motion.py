@@ -71,7 +71,7 @@ class Motion:
         """Return the response of a spring and a damper in a row; time constant in s."""
         from nrs_design.models.contact.relaxation import Relaxation
 
-        return Relaxation(self, time_constant)
+        return Relaxation(self.steps, self.increments, time_constant)
 
     def moved(self, shift: float) -> Motion:
         """Return the motion with its deflection counted from so much further; velocities stay."""

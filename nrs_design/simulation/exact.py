@@ -304,7 +304,7 @@ class _Engine:
 
     def _record(self, states: Array, step: float = 0.0) -> None:
         """Keep states from now on, a step apart, with their outputs."""
-        times = self.t + step * np.arange(len(states))
+        times: Array = self.t + step * np.arange(float(len(states)))
         number = self.names.index(self.controller)
         self.kept.append((times, states, states @ self.location.outputs, number))
 

@@ -87,8 +87,8 @@ class Flow:
         slopes = np.where(turns, rises - falls, 1.0)
         meet = np.where(turns, begin - end + rises * self.h, 0.0) / slopes
         lowest = np.minimum(np.minimum(begin, end), begin + falls * meet)
-        doubtful = (lowest <= 0).any(axis=1)
-        return int(doubtful.argmax()) if doubtful.any() else len(doubtful)
+        doubtful = np.append((lowest <= 0).any(axis=1), True)
+        return int(doubtful.argmax())
 
     def first_crossing(self, z: Array, width: float, sides: Array) -> float | None:
         """Return the first time at which a signal has changed its side, or None.

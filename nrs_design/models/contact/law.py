@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -306,7 +306,7 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
 
     def at_stiffness(self, value: Fraction) -> Self:
         """Return it with the same damping and mass."""
-        return type(self)(value, *astuple(self)[1:])
+        return replace(self, **{self.front: value})
 
     @property
     def element(self) -> Element:

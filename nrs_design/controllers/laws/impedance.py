@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -28,17 +27,13 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     """
 
     name: ClassVar[str] = "impedance"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "contact-kept.impedance": (
-                "Contact is not lost while an impedance controller is active: "
-                "free motion under one is not one of the modes."
-            ),
-        }
-    )
-    units: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "contact-kept.impedance": (
+            "Contact is not lost while an impedance controller is active: "
+            "free motion under one is not one of the modes."
+        ),
+    }
+    units: ClassVar[Mapping[str, str]] = {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
     commands: ClassVar[Command] = ImpedanceControllerSpec.commands
     contact_kept: ClassVar[str | None] = "impedance"
 

@@ -12,7 +12,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
-from types import MappingProxyType
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -62,11 +61,11 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     # An active law may let the velocity command of the hand wait (thesis 6.3.3).
     holds_hand: ClassVar[bool] = False
     # Gains that a spec may fix, and the fields of the controller that do.
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    fixed: ClassVar[Mapping[str, str]] = {}
     # Id of an assumption on its own computation by a processor.
     sampled: ClassVar[str | None] = None
     # Sentences about this law alone, by the ids of assumptions.
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    sentences: ClassVar[Mapping[str, str]] = {}
     # The state may decay in the position command of other controllers.
     bleeds: ClassVar[bool] = False
     # Assumption on contact while the law is active, beside laws with another kind of command: by

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -17,7 +16,7 @@ class ProportionalDerivative(AbstractLaw):
     """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta a command."""
 
     name: ClassVar[str] = "motion"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rpm/rad", "Kd": "rpm*s/rad"})
+    units: ClassVar[Mapping[str, str]] = {"Kp": "rpm/rad", "Kd": "rpm*s/rad"}
 
     Kp: Fraction  # In rpm/rad, or whatever the motor takes instead of rpm
     Kd: Fraction  # In rpm s/rad, likewise

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -25,13 +24,9 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
     """
 
     name: ClassVar[str] = "torque-impedance"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"K": "N*m/rad", "D": "N*m*s/rad", "R": "1"}
-    )
+    units: ClassVar[Mapping[str, str]] = {"K": "N*m/rad", "D": "N*m*s/rad", "R": "1"}
     commands: ClassVar[Command] = TorqueImpedanceSpec.commands
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"K": "stiffness", "D": "damping", "R": "inertia_ratio"}
-    )
+    fixed: ClassVar[Mapping[str, str]] = {"K": "stiffness", "D": "damping", "R": "inertia_ratio"}
 
     K: Fraction  # In N m/rad
     D: Fraction  # In N m s/rad

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.errors import AssemblyError, DesignError
@@ -35,14 +34,12 @@ class Hand(AbstractMemorylessLaw):
     """A spring, a damper and a mass that moves with the contact."""
 
     name: ClassVar[str] = "hand"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "tissue.hand": (
-                "{environment} holds the robot, and its mass moves with the "
-                "contact: its force is k delta + b delta' + m delta''."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "tissue.hand": (
+            "{environment} holds the robot, and its mass moves with the "
+            "contact: its force is k delta + b delta' + m delta''."
+        ),
+    }
     formula: ClassVar[str] = "F = k δ + b δ' + m δ''"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING, MASS)
     takes_velocity: ClassVar[bool] = True

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -34,19 +33,17 @@ class KelvinBoltzmann(AbstractLinearLaw):
     """A spring k2, followed by a spring k1 beside a damper b."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "memory.damper": (
-                "The damper of {environment} keeps its deflection at a switch "
-                "and when the parameters change."
-            ),
-            "memory.creeps": (
-                "While another environment is touched, {environment} is free of "
-                "force and its damper creeps back to rest, b d' = -k1 d, with "
-                "parameters in their ranges."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "memory.damper": (
+            "The damper of {environment} keeps its deflection at a switch "
+            "and when the parameters change."
+        ),
+        "memory.creeps": (
+            "While another environment is touched, {environment} is free of "
+            "force and its damper creeps back to rest, b d' = -k1 d, with "
+            "parameters in their ranges."
+        ),
+    }
     formula: ClassVar[str] = "F + η3 F' = η1 δ + η2 δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("parallel_stiffness", "series_stiffness", "damping")

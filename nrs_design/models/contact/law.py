@@ -10,7 +10,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from nrs_design.errors import AssemblyError
@@ -66,7 +65,7 @@ class AbstractContactLaw(ABC):
 
     name: ClassVar[str]
     # Sentences about this law alone, by the ids of assumptions.
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    sentences: ClassVar[Mapping[str, str]] = {}
     formula: ClassVar[str]
     # Kinds of the parameters, in order: stiffness, damping, or another kind.
     kinds: ClassVar[tuple[str, ...]]

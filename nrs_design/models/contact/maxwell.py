@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -34,17 +33,15 @@ class Maxwell(AbstractLinearLaw):
     """A spring and a damper in a row."""
 
     name: ClassVar[str] = "maxwell"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "memory.maxwell": (
-                "{environment} has no rest position: a lasting deflection "
-                "leaves no force. Its state is the stretch of its spring, which "
-                "stays at a switch and when the parameters change; that the "
-                "deflection itself returns to zero is not claimed, nor that it "
-                "stays bounded under a command or other input."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "memory.maxwell": (
+            "{environment} has no rest position: a lasting deflection "
+            "leaves no force. Its state is the stretch of its spring, which "
+            "stays at a switch and when the parameters change; that the "
+            "deflection itself returns to zero is not claimed, nor that it "
+            "stays bounded under a command or other input."
+        ),
+    }
     formula: ClassVar[str] = "F + (b/k) F' = b δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")

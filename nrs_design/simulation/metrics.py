@@ -59,8 +59,7 @@ def displayed_impedance(command: Array, torque: Array) -> tuple[Array, Mask]:
     it is taken.
     """
     size = np.abs(command)
-    # What rounding puts above the smallest command is not above it.
-    taken = (torque != 0) & (size > SMALLEST_SHARE * (1 + 1e-9) * size.max(initial=0.0))
+    taken = (torque != 0) & (size > SMALLEST_SHARE * size.max(initial=0.0))
     quotient = np.zeros_like(command)
     quotient[taken] = np.abs(torque[taken]) / size[taken]
     return quotient, taken

@@ -12,7 +12,6 @@ import nrs_design.wings
 from nrs_design.errors import NrsDesignError
 from nrs_design.wings import WINGS, load_wing, wing_of
 from tests.package import FILES, PACKAGE
-from tests.simulation.interactions import text_of
 from tests.support import ROOT, SOFT_TISSUE
 
 CORE = sorted(name for name in FILES if [*name.split("."), ""][1] not in WINGS)
@@ -93,18 +92,6 @@ def test_a_command_of_a_missing_wing_ends_in_one_message(house):
                 f"error[NRS000]: the wing {house.wing} is not installed"
             ), done.stderr
             assert "Traceback" not in done.stderr
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("house", ["identification"], indirect=True)
-@pytest.mark.parametrize("command", ["check", "simulate"])
-def test_recorded_commands_are_read_by_identification(house, command):
-    text = text_of(scenario="command: {csv: hand.csv}")
-    (house.folder / "hand.nrs.yaml").write_text(text, encoding="utf-8")
-    (house.folder / "hand.csv").write_text("time_s,velocity_deg_s\n0,0\n1,5\n")
-    done = house.program(command, "hand.nrs.yaml")
-    assert done.returncode == 2
-    assert "the wing identification is not installed" in done.stderr
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
         return {}
     # Controllers are slow to load, and a certificate of given matrices has none.
     from nrs_design.axis import COMMAND_UNITS, axis_with
-    from nrs_design.controllers.gains import units_of
+    from nrs_design.controllers.controller_design import units_of
     from nrs_design.loop.assumptions import command_in
 
     system = certificate.system

@@ -56,10 +56,6 @@ def _understood(path: Path) -> dict[str, Any]:
     from nrs_design.spec.describe import describe
 
     loaded = take_spec(path)
-    if loaded.spec.kind == "interaction-design" and "csv:" in loaded.text:
-        from nrs_design.simulation.build_scenario import check_recordings
-
-        check_recordings(loaded.spec, path.parent)
     return {
         "path": str(path),
         "valid": True,

@@ -75,9 +75,7 @@ def answer_point(job: Job, point: tuple[tuple[str, ...], PointAnswer | None]) ->
 
 
 def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
-    from nrs_design.gating.lock import hash_followed
-
-    means: tuple[Data, ...] = tuple((axis.sha256, {**hash_followed(axis)}) for axis in axes)
+    means: tuple[Data, ...] = tuple(axis.sha256 for axis in axes)
     asked = (*job.command, *job.options)
     return hash_meaning({"spec": means, "asked": asked, "version": __version__})
 

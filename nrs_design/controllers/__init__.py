@@ -1,1 +1,1 @@
-"""What runs on the robot: control laws with the gains that ship."""
+"""Control laws of the robot, with the gains that ship."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from nrs_design.axis import AxisType
-from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
+from nrs_design.controllers.laws import LAWS, AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
 
-# What lets the modes of all controllers share one state.
+# Remedy for modes that share no state.
 SHARED_STATES = "give all impedance controllers a virtual inertia Mt > 0, or none of them"
 
 
@@ -31,7 +31,7 @@ class Controller:
     name: str  # As in the spec
     law: CompliantLaw  # Its law with the gains that ship
     environment: str | None  # The environment that it was designed for
-    # The environments that it may touch while it is active; empty for position control.
+    # Environments in contact with the active controller; empty for position control.
     contacts: tuple[str, ...]
     # Gains of the search before rounding. Equality of controllers ignores them.
     optimum: ImpedanceOptimum | None = field(default=None, compare=False)
@@ -43,7 +43,7 @@ class ControllerDesign:
 
     motion: ProportionalDerivative  # The motion controller below the compliant ones
     controllers: tuple[Controller, ...]  # In the order of the spec
-    sensor: Sensor = field(default_factory=Sensor)  # Of the force that they act on
+    sensor: Sensor = field(default_factory=Sensor)  # Force sensor of all controllers
     command: str = "rpm"  # Unit of the commands that the motor takes
     axis: AxisType = AxisType.ROTARY  # Whose units the gains have
 
@@ -101,11 +101,22 @@ class ControllerDesign:
         return f"the controllers keep different states of their own ({found})"
 
     @property
-    def units(self) -> dict[str, Mapping[str, str]]:
-        """The units of all gains, by the names of `laws`; the motion gains make commands."""
-        motion, unit = self.motion.units_in(self.command), self.axis.unit
-        each = {name: law.units for name, law in self.laws.items()} | {self.motion.name: motion}
-        return {
-            name: {key: unit(each[name][key]) for key in law.gains}
-            for name, law in self.laws.items()
-        }
+    def units(self) -> dict[str, dict[str, str]]:
+        """The units of all gains, by the names of `laws`."""
+        gains = {name: law.gains for name, law in self.laws.items()}
+        return units_of(gains, self.command, self.axis)
+
+
+def units_of(
+    gains: Mapping[str, Collection[str]], command: str, axis: AxisType
+) -> dict[str, dict[str, str]]:
+    """Return the units of gains by the names of `ControllerDesign.laws`.
+
+    `command` is the unit of the commands that the motor takes, which the motion gains make.
+    """
+    units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
+    motion, pd = ProportionalDerivative.units_in(command), ProportionalDerivative.name
+    return {
+        name: {gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in own}
+        for name, own in gains.items()
+    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import struct
+from collections.abc import Callable
 from fractions import Fraction
 
 from nrs_design.errors import DesignError
@@ -18,11 +18,16 @@ def to_float32(value: Fraction) -> Fraction:
     In rationals throughout: by way of a double it would be rounded twice. Beyond the range of
     single precision it is a `DesignError`.
     """
+    return _rounded(value, round)
+
+
+def _rounded(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
+    """Return a neighbor of a value in single precision; `whole` picks which."""
     exponent = value.numerator.bit_length() - value.denominator.bit_length()
     if abs(value) < Fraction(2) ** exponent:
         exponent -= 1
     step = Fraction(2) ** max(exponent + 1 - PRECISION, SMALLEST)
-    rounded = round(value / step) * step
+    rounded = whole(value / step) * step
     if abs(rounded) >= 1 << LIMIT:
         raise DesignError(
             "a gain is beyond the range of single precision, 3.4e38",
@@ -33,16 +38,7 @@ def to_float32(value: Fraction) -> Fraction:
 
 def float32_not_above(value: Fraction) -> Fraction:
     """Return the largest single-precision number that is not above a value."""
-    rounded = to_float32(value)
-    if rounded <= value:
-        return rounded
-    if rounded == 0:
-        return -(Fraction(2) ** SMALLEST)
-    (bits,) = struct.unpack("<I", struct.pack("<f", float(rounded)))
-    # Bits count away from zero.
-    further = bits - 1 if rounded > 0 else bits + 1
-    below: float = struct.unpack("<f", struct.pack("<I", further))[0]
-    return Fraction(below)
+    return _rounded(value, math.floor)
 
 
 def float32_not_below(value: Fraction) -> Fraction:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.laws import LAWS, NO_MOTION, ProportionalDerivative
@@ -39,23 +38,6 @@ def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
     return {
         name: {gain: exact_decimal(value) for gain, value in law.gains.items()}
         for name, law in design.laws.items()
-    }
-
-
-def units_of(
-    gains: Mapping[str, Mapping[str, str]], command: str, axis: AxisType = AxisType.ROTARY
-) -> dict[str, dict[str, str]]:
-    """Return the units of gains that are named as `gains_of` names them; the PD is ``motion``.
-
-    `command` is the unit of the commands that the motor takes.
-    """
-    units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
-    motion = ProportionalDerivative.units_in(command)
-    return {
-        name: {
-            gain: axis.unit((motion if name == MOTION else units).get(gain, "")) for gain in values
-        }
-        for name, values in gains.items()
     }
 
 
@@ -125,7 +107,7 @@ def _check_near(
 
 
 def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
-    """Return gains with those that `design.free` names as the spec gives them, if it does.
+    """Return gains with the free ones at the values of the spec, as far as it has any.
 
     A `CertificateError` if one is farther from that than its factors allow.
     """
@@ -182,7 +164,7 @@ def idle_decay(idle: IdleStatesSpec) -> Fraction:
 
 
 def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
-    """Return what a period in s leaves of idle states: a single-precision number, too."""
+    """Return the share of idle states after a period in s: a single-precision number."""
     return to_float32(exponential_between(-idle_decay(idle) * period)[0])
 
 

@@ -23,7 +23,7 @@ V = TypeVar("V")
 # value the next operations take (`own`); in proportion to the largest angle (`angle`).
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
-# Of these, the left operand is a coefficient.
+# Kinds with a coefficient for the left operand.
 WITH_COEFFICIENT: frozenset[Kind] = frozenset({"multiply", "saturate"})
 
 
@@ -37,7 +37,7 @@ class Value:
     limit: Fraction  # A single-precision number; beyond it, or not a number, the value is refused
     meaning: str  # In words
     rounding: Rounding = "none"  # Rounding of the reading
-    # Whether a state is the measured angle at first; others are zero.
+    # The first value of a state is the measured angle, else zero.
     starts_at_angle: bool = False
     stored: str = ""  # As modes call a state that matters to stability, with its unit
 
@@ -62,7 +62,7 @@ class Coefficient:
         return self.values[mode if self.by_mode else 0]
 
     def symbol_in(self, mode: int) -> str:
-        """Return what terms call it in a mode."""
+        """Return the name in terms of a mode."""
         return self.symbols[mode] if self.symbols else self.symbol
 
 
@@ -70,15 +70,15 @@ class Coefficient:
 class Operation:
     """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient."""
 
-    name: str  # Of the result
+    name: str  # Name of the result
     # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
     # ``saturate``: right within plus and minus a coefficient.
     kind: Kind
     # left, right: names of values, of coefficients, or of results of operations before.
     left: str
     right: str
-    rounding: Rounding = "term"  # How its rounding counts
-    symbol: str = ""  # As terms call the result; by default they write it out
+    rounding: Rounding = "term"  # Kind of rounding
+    symbol: str = ""  # Name of the result in terms; by default the whole expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,38 +96,27 @@ class StepLaw:
     operations: tuple[Operation, ...]  # In the order in which they are computed
     outputs: Mapping[str, str]  # Outputs, and the results that they are; ``units`` has their units
     following: Mapping[str, str]  # Every state, and the result that it has after the step
-    units: Mapping[str, str]  # Of the outputs
-    logic: StepLogic | None = None  # What chooses the mode, where the spec says it
+    units: Mapping[str, str]  # Units of the outputs
+    logic: StepLogic | None = None  # Mode logic of the spec, if any
 
     def __post_init__(self) -> None:
         """Refuse a list that does not fit together."""
-        self._check_operations()
-        if set(self.following) != {state.name for state in self.states}:
-            raise ValueError("every state needs the value that follows it, and nothing else")
-        results = {operation.name for operation in self.operations}
-        if not {*self.outputs.values(), *self.following.values()} <= results:
-            raise ValueError("an output, or the next state, is not computed")
-        self._check_numbers()
-
-    def _check_operations(self) -> None:
-        known = {value.name for value in self.values}
-        constants = {c.name for c in self.coefficients}
-        names = [*(value.name for value in self.values), *(c.name for c in self.coefficients)]
+        known, constants = {value.name for value in self.values}, {*self.coefficient}
         for operation in self.operations:
             lefts = constants if operation.kind in WITH_COEFFICIENT else known
             if operation.left not in lefts or operation.right not in known:
                 raise ValueError(f"{operation.name} is computed from what is not there")
             known.add(operation.name)
-            names.append(operation.name)
-        if len({*names}) != len(names):
+        parts = (self.values, self.coefficients, self.operations)
+        if len(known | constants) != sum(map(len, parts)):
             raise ValueError("a name occurs twice")
-
-    def _check_numbers(self) -> None:
-        numbers = [
-            *(n for c in self.coefficients for n in c.values),
-            *(v.limit for v in self.values),
-        ]
-        if not all(map(is_float32, numbers)):
+        if set(self.following) != {state.name for state in self.states}:
+            raise ValueError("every state needs the value that follows it, and nothing else")
+        results = {operation.name for operation in self.operations}
+        if not {*self.outputs.values(), *self.following.values()} <= results:
+            raise ValueError("an output, or the next state, is not computed")
+        numbers = (n for c in self.coefficients for n in c.values)
+        if not all(map(is_float32, (*numbers, *(value.limit for value in self.values)))):
             raise ValueError("a coefficient or a limit is no single-precision number")
         if any(len(c.values) not in (1, len(self.modes)) for c in self.coefficients):
             raise ValueError("a coefficient has a number for some modes only")

@@ -1,4 +1,4 @@
-"""What a control law adds to a step: states, numbers, and operations around the motion loop.
+"""Parts of a step: states, numbers and operations of a control law around the motion loop.
 
 A program lists the parts of all its laws once. A law without a part gives its numbers as zero
 there, or as what a sample leaves of idle states: products with zero and one are exact, so what is
@@ -13,13 +13,13 @@ from fractions import Fraction
 
 from nrs_design.controllers.operations import Operation, Value
 
-# Where a spec says nothing: no robot gets there, and nothing overflows.
+# Limit by default: no robot gets there, and nothing overflows.
 BEYOND = Fraction(1_000_000)
 # The operand that stands for the force: the sample, or the last lag of its filter.
 FORCE = "force"
 # Gain from the force to the torque that a law subtracts.
 FORCE_GAIN = "Kf_torque"
-# What the hand commands, the position that is commanded, and the wanted force.
+# Inputs: velocity of the hand, commanded position, wanted force.
 HAND = Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands")
 POSITION = Value("position", "X", "rad", BEYOND, "commanded position", "angle")
 WANTED = Value("wanted_torque", "Fd", "N*m", BEYOND, "wanted torque of the contact")
@@ -38,7 +38,7 @@ class StepGain:
     # Symbol of what a sample leaves of a state while laws without the part are active; empty where
     # these have zero.
     idle: str = ""
-    # Whether all laws with the part hold the same number.
+    # All laws with the part may hold the same number.
     common: bool = False
 
 

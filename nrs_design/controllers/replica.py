@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from operator import add, mul, sub
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +31,12 @@ def _saturated(limit: np.float32, value: np.float32) -> np.float32:
     return -limit if value < -limit else value
 
 
-_COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = MappingProxyType(
-    {"add": add, "subtract": sub, "multiply": mul, "saturate": _saturated}
-)
+_COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = {
+    "add": add,
+    "subtract": sub,
+    "multiply": mul,
+    "saturate": _saturated,
+}
 
 
 class StepProgram:

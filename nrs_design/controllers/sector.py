@@ -1,4 +1,4 @@
-"""What readings of torque and angle must keep where a stiffness stays in its range.
+"""Conditions on readings of torque and angle, for a stiffness within a range.
 
 At every sample there is a stiffness ``k`` in ``[low, high]``, of its own, with the torque
 ``k max(angle - surface, 0)`` (``k (angle - surface)`` where contact is kept); readings are off by
@@ -32,12 +32,12 @@ class Sector:
     angle_noise: Fraction  # Largest error of its angle in rad, with skew and what the surface moves
     reading: Fraction  # Largest error of the angle as it is read, in rad
     surface: Surface  # When the surface may be elsewhere
-    surface_speed: Fraction  # How fast it may move at any time, in rad/s
-    kept: bool  # Whether contact is never lost, so that the tissue pulls, too
-    speed: Fraction | None  # Largest speed of the joint in rad/s; None if nobody says it
+    surface_speed: Fraction  # Largest speed of the surface in rad/s
+    kept: bool  # Contact is never lost, so the tissue pulls as well
+    speed: Fraction | None  # Largest speed of the joint in rad/s; None if unknown
 
     def noise(self) -> Fraction:
-        """Return how far apart, in rad, noise may move two surfaces that are the same."""
+        """Return the distance in rad by which noise parts two readings of one surface."""
         yields = 1 / self.low + 1 / self.high
         return 4 * self.angle_noise + 2 * self.torque_noise * yields
 
@@ -65,7 +65,7 @@ class Sector:
 
 
 def sector_of(spec: InteractionDesignSpec) -> Sector | str:
-    """Return what readings of a run must keep, or why they cannot be held against the spec."""
+    """Return the conditions on readings of a run, or the reason for none."""
     if spec.monitoring is None:
         return "the spec has no `monitoring`, so nothing says how far readings are off"
     if spec.contact is None:
@@ -88,7 +88,7 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
 
 
 def _sector(spec: InteractionDesignSpec, touched: list[Environment], viscous: Fraction) -> Sector:
-    """Return the sector of what is touched; damping adds so much torque."""
+    """Return the sector of touched environments, with the torque of damping in N m."""
     said = spec.monitoring
     assert said is not None
     speed, skew, surface = map(_not_below, (said.speed, said.skew, said.surface_speed))

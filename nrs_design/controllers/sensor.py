@@ -33,7 +33,7 @@ class LowPass:
 
     @property
     def denominator(self) -> tuple[float, ...]:
-        """Of the transfer function, whose numerator is 1: highest power of s first."""
+        """Denominator of the transfer function, highest power of s first; the numerator is 1."""
         powers = ((1 / self.pole) ** k * comb(self.order, k) for k in range(self.order, -1, -1))
         return tuple(map(float, powers))
 
@@ -82,7 +82,7 @@ class Sensor:
 
     # What may last, by where it comes from: bounds on torques about the pivot in N m.
     errors: Mapping[str, Fraction] = field(default_factory=dict)
-    filter: LowPass | None = None  # Of the signal
+    filter: LowPass | None = None  # Filter of the signal
 
     @property
     def lasting(self) -> Fraction:

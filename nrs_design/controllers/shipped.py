@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -10,7 +9,6 @@ from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
-from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_analysis import check_range
@@ -31,25 +29,25 @@ def shipped_law(
     `outer` is that of force, filter and admittance. A `DesignError` if a controller has no step, or
     a step could leave single precision.
     """
+    outer, filter_, motion = outer or period, design.sensor.filter, design.motion
     method = "exact" if spec.sampling is None else spec.sampling.admittance
-    laws = {c.name: c.law.discretize(outer or period, method) for c in design.controllers}
-    law = _step_law(spec, design, laws, period, outer or period)
+    laws = {c.name: c.law.discretize(outer, method) for c in design.controllers}
+    low_pass = None if filter_ is None else filter_.discretize(outer)
+    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec), design.takes)
+    _check_states(spec, design)
+    idle = None
+    if spec.idle_states is not None:
+        # A reset sets idle states to zero at the switch: a decay factor of zero does the same.
+        idle = Fraction(0) if spec.idle_states.reset else idle_share(spec.idle_states, period)
+    law = build_law(frame, laws, idle)
     check_range(law)
     law = _with_units(law, design.axis, design.command)
     logic = spec.mode_logic
     return replace(law, logic=None if logic is None else StepLogic.of(logic, law.modes, period))
 
 
-def _step_law(
-    spec: InteractionDesignSpec,
-    design: ControllerDesign,
-    laws: Mapping[str, DiscreteLaw],
-    period: Fraction,
-    outer: Fraction,
-) -> StepLaw:
-    low_pass = None if design.sensor.filter is None else design.sensor.filter.discretize(outer)
-    motion = design.motion
-    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec), design.takes)
+def _check_states(spec: InteractionDesignSpec, design: ControllerDesign) -> None:
+    """Refuse controllers whose states no program has."""
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
         because = "it jumps at every switch, and no proof of a law in steps covers that"
@@ -60,11 +58,6 @@ def _step_law(
         )
     if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
-    if spec.idle_states is None:
-        return build_law(frame, laws)
-    # A reset sets idle states to zero at the switch: a decay factor of zero does the same.
-    idle = spec.idle_states
-    return build_law(frame, laws, Fraction(0) if idle.reset else idle_share(idle, period))
 
 
 def _with_units(law: StepLaw, axis: AxisType, command: str) -> StepLaw:
@@ -76,9 +69,9 @@ def _with_units(law: StepLaw, axis: AxisType, command: str) -> StepLaw:
 
     return replace(
         law,
-        inputs=tuple(replace(value, unit=named(value.unit)) for value in law.inputs),
-        states=tuple(replace(value, unit=named(value.unit)) for value in law.states),
-        coefficients=tuple(replace(c, unit=named(c.unit)) for c in law.coefficients),
+        inputs=tuple(replace(one, unit=named(one.unit)) for one in law.inputs),
+        states=tuple(replace(one, unit=named(one.unit)) for one in law.states),
+        coefficients=tuple(replace(one, unit=named(one.unit)) for one in law.coefficients),
         units={name: named(unit) for name, unit in law.units.items()},
     )
 

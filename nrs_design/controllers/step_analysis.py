@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 
 from nrs_design.controllers.float32 import PRECISION
 from nrs_design.controllers.operations import Kind, Operation, StepLaw
@@ -39,7 +38,7 @@ class Term:
 
     name: str  # Such as ``b F``
     form: LinearForm  # Value without rounding, over the state
-    roundings: int  # In how many it takes part
+    roundings: int  # Number of roundings of the term
 
     def times(self, factor: Fraction, prefix: str, more: int) -> Term:
         """Return the term times a single-precision factor, which is named in front.
@@ -134,14 +133,12 @@ def check_range(law: StepLaw) -> None:
             )
 
 
-_BOUNDS: Mapping[Kind, Callable[[Fraction, Fraction], Fraction]] = MappingProxyType(
-    {
-        "add": lambda left, right: (left + right) * SLACK,
-        "subtract": lambda left, right: (left + right) * SLACK,
-        "multiply": lambda left, right: left * right * SLACK,
-        "saturate": min,
-    }
-)
+_BOUNDS: Mapping[Kind, Callable[[Fraction, Fraction], Fraction]] = {
+    "add": lambda left, right: (left + right) * SLACK,
+    "subtract": lambda left, right: (left + right) * SLACK,
+    "multiply": lambda left, right: left * right * SLACK,
+    "saturate": min,
+}
 
 
 def counted_terms(

@@ -26,14 +26,14 @@ from nrs_design.controllers.sensor import DiscreteLowPass
 from nrs_design.models.drive import Takes
 
 UNITS = {"command": "rpm"}
-# Where the integral of the force error is cut off.
+# Name of the limit on the integral of the force error.
 INTEGRAL_LIMIT = "integral_limit"
 ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, slots=True)
 class StepLimits:
-    """Where inputs are refused and where signals saturate; single-precision numbers."""
+    """Limits of inputs and of signals that saturate; single-precision numbers."""
 
     # Joint angle and reference beyond it are refused, rad.
     angle: Fraction = BEYOND
@@ -51,9 +51,9 @@ class StepLimits:
 
 @dataclass(frozen=True, slots=True)
 class StepFrame:
-    """What all laws of a program have in common."""
+    """Motion controller, filter and limits of all laws of a program."""
 
-    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period.
+    # Gains of the motion controller in rpm/rad: Kp, and Kd over the period.
     Kp: Fraction
     D: Fraction
     # Through which the force passes on its way to the laws.
@@ -70,7 +70,7 @@ class StepFrame:
 
     @property
     def streams(self) -> bool:
-        """Whether the robot closes its own motion loop: it takes velocities or positions."""
+        """Whether the robot takes velocities or positions, and closes the motion loop."""
         return self.takes in (Takes.VELOCITY, Takes.POSITION)
 
     @property
@@ -83,7 +83,7 @@ class StepFrame:
 
     @property
     def coefficients(self) -> Iterator[Coefficient]:
-        """Those of the motion controller and of the filter of the force."""
+        """Coefficients of the motion controller and of the force filter."""
         said = {"Kp": ("Kp", "rpm/rad"), "Kd_over_T": ("D", "rpm/rad")}
         for name, number in self.numbers.items():
             yield Coefficient(name, *said.get(name, (name, "1")), (number,))
@@ -116,7 +116,7 @@ def numbers_in_force(
 
 
 def _has(law: DiscreteLaw, part: StepPart) -> bool:
-    """Tell whether a part is one of a law's own."""
+    """Tell whether a law has a part."""
     return part.name in {own.name for own in law.law.parts(law.numbers, beside=False)}
 
 
@@ -264,7 +264,7 @@ def _measured(limits: StepLimits) -> tuple[Value, ...]:
 
 
 def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]:
-    """Yield the reference: the commanded position, and what the parts add to it."""
+    """Yield the sum of the commanded position and of all parts."""
     total = ""
     for part in parts:
         yield from part.before

@@ -26,7 +26,7 @@ class SignalBound:
     """One side of a threshold."""
 
     signal: str  # ``command`` or ``torque``, positive towards the tissue
-    above: bool  # Whether the signal has to be at least, or at most, the threshold
+    above: bool  # True for a least value, false for a largest value
     threshold: Fraction  # A single-precision number in rad/s or N m
 
 
@@ -44,7 +44,7 @@ class StepLogic:
     """Which mode is active, sample by sample."""
 
     start: int  # Mode at first
-    signals: tuple[str, ...]  # What it sees
+    signals: tuple[str, ...]  # Names of the signals
     switches: tuple[StepSwitch, ...]  # The first that may be made is
     stays: tuple[int, ...]  # For how many samples each mode is held
 

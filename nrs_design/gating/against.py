@@ -25,7 +25,7 @@ from nrs_design.certificates.prove import (
 )
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.find_specs import find_specs
-from nrs_design.gating.lock import LockedSpec, hash_recorded, read_lock_if_any
+from nrs_design.gating.lock import LockedSpec, read_lock_if_any
 from nrs_design.gating.obligations import (
     BaseChanges,
     Caution,
@@ -36,7 +36,7 @@ from nrs_design.gating.obligations import (
 )
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.spec import LoadedSpec, read_spec
+from nrs_design.spec import read_spec
 from nrs_design.spec.load import is_there
 from nrs_design.spec.spec_weakening import Change, find_changes
 from nrs_design.spec.task_space import file_of
@@ -162,15 +162,6 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
         yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
         return
     yield from find_changes(before.spec, after.spec)
-    yield from _of_recorded(before, after)
-
-
-def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
-    """Yield the recorded commands that have changed: limits may be easier to keep in their runs."""
-    was, now = hash_recorded(before), hash_recorded(after)
-    for name in was.keys() & now.keys():
-        if was[name] != now[name]:
-            yield Change(("scenarios",), f"the commands in {name} are others", True)
 
 
 def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterator[Change]:

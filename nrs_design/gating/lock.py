@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import posixpath
-from collections.abc import Callable, Mapping
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -26,8 +23,6 @@ from pydantic import (
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
-from nrs_design.spec.scenarios import ScenarioSpec
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
@@ -111,8 +106,7 @@ def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
 class LockedSpec(_Frozen):
     """One spec: its file, relative to the lock file, the hash of what it says, and what was found.
 
-    ``version`` is that of the nrs-design which designed the gains, ``recorded`` the hash of every
-    file of commands that a scenario with limits plays.
+    ``version`` is that of the nrs-design which designed the gains.
     """
 
     path: RelativePath
@@ -123,14 +117,12 @@ class LockedSpec(_Frozen):
     certificate: LockedCertificate | None
     gains: dict[str, dict[str, str]]
     goals: Annotated[list[LockedGoal], AfterValidator(_skip_retired)]
-    recorded: dict[str, Sha256] = Field(default_factory=dict)
     remark: LockedRemark | None = None
 
     @model_serializer(mode="wrap")
     def _leave_out_what_is_empty(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
         document: dict[str, Any] = dump(self)
-        may_lack = ("recorded", "remark")
-        return {key: value for key, value in document.items() if value or key not in may_lack}
+        return {key: value for key, value in document.items() if value or key != "remark"}
 
     @model_validator(mode="after")
     def _check_certificate(self) -> LockedSpec:
@@ -156,28 +148,6 @@ class Lock(_Frozen):
         if len(set(files)) != len(files):
             raise ValueError("two specs have the same certificate file")
         return self
-
-
-def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
-    """Return the SHA-256 of every file that scenarios with limits follow, by its name in the spec.
-
-    Files are below its folder; one that cannot be read is left out.
-    """
-    return _hashes(loaded, lambda scenario: scenario.limits is not None)
-
-
-def hash_followed(loaded: LoadedSpec) -> Mapping[str, str]:
-    """Return the SHA-256 of every file that any scenario follows; see `hash_recorded`."""
-    return _hashes(loaded, lambda scenario: True)
-
-
-def _hashes(loaded: LoadedSpec, counts: Callable[[ScenarioSpec], bool]) -> dict[str, str]:
-    spec, found = loaded.spec, {}
-    runs = spec.scenarios.values() if isinstance(spec, InteractionDesignSpec) else ()
-    for name in sorted({run.command.csv for run in runs if run.command.csv and counts(run)}):
-        with suppress(OSError), open_regular(loaded.path.parent / name) as stream:
-            found[name] = hashlib.file_digest(stream, "sha256").hexdigest()
-    return found
 
 
 def dump_lock(lock: Lock) -> str:

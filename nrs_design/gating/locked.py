@@ -12,7 +12,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
-from nrs_design.gating.lock import Lock, LockedSpec, hash_recorded, relative_to_lock
+from nrs_design.gating.lock import Lock, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -129,8 +129,6 @@ def _find_change(loaded: LoadedSpec, entry: LockedSpec) -> str | None:
     """Say what has changed since a spec was locked."""
     if entry.sha256 != loaded.sha256:
         return "this spec has changed since it was locked"
-    if entry.recorded != hash_recorded(loaded):
-        return "a file of commands of a scenario has changed since it was locked"
     if entry.gains and entry.version != __version__:
         was = f"this spec was designed by nrs-design {entry.version}"
         return f"{was}, and this is {__version__}, which may design other gains"

@@ -130,8 +130,6 @@ class SpecOutcome:
     cautions: tuple[Caution, ...] = ()  # What is doubtful, and breaks no obligation
     # As `nrs_design.certificates.bounds.bounds_summary` gives them.
     bounds: Sequence[Mapping[str, Any]] = ()
-    # As `nrs_design.gating.lock.hash_recorded` gives it.
-    recorded: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -156,7 +156,6 @@ def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
                 for item in spec.obligations
                 if item.rule not in DECIDED_AGAIN
             ],
-            "recorded": dict(spec.recorded),
             "remark": _remark(spec.cautions),
         }
     )

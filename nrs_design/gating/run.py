@@ -21,7 +21,6 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
-from nrs_design.gating.lock import hash_recorded
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed, is_utf8
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
@@ -186,7 +185,6 @@ def _examine(
             progress("re-check")
             fault = run_verification(place, result).fault
         obligations += (examiner.certificate(place, fault),)
-    recorded = hash_recorded(loaded)
     simulated = tuple(_judge_scenarios(result, examiner, progress))
     analysis, goals = _judge_margins(result, examiner, progress)
     shown = (*examiner.contact(certificate), *examiner.limits(certificate))
@@ -205,9 +203,9 @@ def _examine(
         _write_page(result, page, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
-        return replace(outcome, recorded=recorded)
+        return outcome
     gains, units = gains_of(result.design), result.design.units
-    return replace(outcome, gains=gains, units=units, recorded=recorded)
+    return replace(outcome, gains=gains, units=units)
 
 
 def _judge_margins(

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
-from types import MappingProxyType
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.interval import Interval
@@ -28,20 +27,20 @@ GAIN = "Km"
 
 
 class Takes(StrEnum):
-    """What a robot is commanded."""
+    """Kind of command of a robot."""
 
     VELOCITY = "velocity"
     POSITION = "position"
     TORQUE = "torque"
 
 
-# Units of what robots take that have no motor of the user's.
-COMMANDS: Mapping[Takes, str] = MappingProxyType(
-    {Takes.VELOCITY: "rad/s", Takes.POSITION: "rad", Takes.TORQUE: "N*m"}
-)
-SLIDING: Mapping[Takes, str] = MappingProxyType(
-    {Takes.VELOCITY: "m/s", Takes.POSITION: "m", Takes.TORQUE: "N"}
-)
+# Units of commands to robots with drives of their own.
+COMMANDS: Mapping[Takes, str] = {
+    Takes.VELOCITY: "rad/s",
+    Takes.POSITION: "rad",
+    Takes.TORQUE: "N*m",
+}
+SLIDING: Mapping[Takes, str] = {Takes.VELOCITY: "m/s", Takes.POSITION: "m", Takes.TORQUE: "N"}
 
 
 def taken_in(command: str) -> Takes | None:
@@ -81,11 +80,11 @@ class Drive:
     # [A, B] over the states and the deflection; a velocity that jumps with the command is no state.
     rates: MultiAffine
     ranges: Mapping[str, Interval]  # Ranges of the numbers in `rates`, but for the load
-    inverse: frozenset[str] = frozenset()  # Those that `rates` takes one over
-    loaded: bool = False  # Whether the environment acts on the joint, by the symbols of `LOAD`
+    inverse: frozenset[str] = frozenset()  # Symbols of numbers that `rates` inverts
+    loaded: bool = False  # The environment may act on the joint, by the symbols of `LOAD`
     # The velocity by the same states and the command, where it jumps.
     speed: MultiAffine | None = None
-    # Last state, where it is a memory of the environment.
+    # Name of the last state, if the environment has a memory.
     memory: str | None = None
 
     @property
@@ -203,7 +202,7 @@ def velocity_drive(loop: MotionLoop) -> Drive:
     n = len(A)
     rates = [(*row, ZERO, b) for row, b in zip(A, B, strict=True)]
     way = (ONE, *(ZERO,) * (n + 1))
-    return Drive(Takes.VELOCITY, _states(n), MultiAffine({(): (*rates, way)}), MappingProxyType({}))
+    return Drive(Takes.VELOCITY, _states(n), MultiAffine({(): (*rates, way)}), {})
 
 
 def position_drive(loop: MotionLoop) -> Drive:
@@ -239,9 +238,7 @@ def position_drive(loop: MotionLoop) -> Drive:
     jumps = B[0] != 0
     names = _states(n if jumps else n - 1)
     speed = MultiAffine({(): (rates[-1],)}) if jumps else None
-    return Drive(
-        Takes.POSITION, names, MultiAffine({(): tuple(rates)}), MappingProxyType({}), speed=speed
-    )
+    return Drive(Takes.POSITION, names, MultiAffine({(): tuple(rates)}), {}, speed=speed)
 
 
 def _states(n: int) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ class Interval:
     nominal: Fraction
     low: Fraction
     high: Fraction
-    varies: bool = True  # Whether the value moves; else it is an unknown constant
+    varies: bool = True  # False for an unknown constant
 
     @classmethod
     def point(cls, value: Fraction) -> Interval:
@@ -45,14 +45,14 @@ class Interval:
 
     @property
     def text(self) -> str:
-        """Its one value, or its ends in brackets, exactly."""
+        """The value of a point, or both ends in brackets, exactly."""
         if self.low == self.high:
             return exact_text(self.low)
         return f"[{exact_text(self.low)}, {exact_text(self.high)}]"
 
     @property
     def where(self) -> str:
-        """Where it is, after its name: ``= 2``, or ``in [1, 3]``."""
+        """Text behind the name of a number: ``= 2``, or ``in [1, 3]``."""
         return f"{'in' if self.ends[1:] else '='} {self.text}"
 
     @property

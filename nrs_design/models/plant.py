@@ -17,7 +17,7 @@ class Plant:
     """Actuator and environments of one axis."""
 
     actuator: Actuator  # Identified model
-    # In the order of the spec, and after them those that are several of them, touched at once.
+    # In the order of the spec; several that are touched at once come last.
     environments: tuple[Environment, ...]
     actuator_ranges: ActuatorRanges  # Where the actuator may be
     given_loop: MotionLoop | None = None  # The closed motion loop, if the spec states it

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import axis_with
@@ -120,7 +119,7 @@ def _simulate(
 
 def _usual(spec: InteractionDesignSpec, scenario: Scenario) -> str:
     """Return the engine for a scenario: a law of tissue that is not linear has no exponential."""
-    nonlinear = any(not surface.is_linear for surface in scenario.surfaces)
+    nonlinear = any(surface.element is None for surface in scenario.surfaces)
     return "sampled" if spec.sampling is not None or nonlinear else "exact"
 
 
@@ -143,10 +142,9 @@ def scenarios_of(designed: Designed, wanted: Runs) -> list[Scenario]:
     """Return the scenarios that are wanted, in SI."""
     from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 
-    spec, plant, path = designed.spec, designed.plant, designed.loaded.path
-    folder = Path() if path is None else path.parent
+    spec, plant = designed.spec, designed.plant
     return [
-        build_scenario(spec, plant, name, spec.scenarios[name], folder)
+        build_scenario(spec, plant, name, spec.scenarios[name])
         if spec.scenarios
         else default_scenario(spec, plant)
         for name in names_of(spec, wanted)

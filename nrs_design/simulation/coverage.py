@@ -109,8 +109,6 @@ class Coverage:
             yield "there are several surfaces, and the proof is about one"
         for surface in self.scenario.surfaces:
             name = surface.environment
-            if surface.arms:
-                yield f"{name} has others beside it, and the proof is about it alone"
             if surface.element is None:
                 yield f"{name} is nonlinear, and the proof is about a box of linear ones"
             if any(name not in c.contacts for c in self.spec.controllers.values()):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,14 +11,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices, Norm
 from nrs_design.simulation.rules import Rules
 from nrs_design.simulation.saturation import saturated_step
-from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
-
-
-def all_modes(system: SwitchedSystem) -> SwitchedSystem:
-    """Return a system of all modes, in contact and in free motion."""
-    if system.contact is None:
-        return system
-    return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
+from nrs_design.simulation.switched import SwitchedRun, all_modes, transition_matrices
 
 
 def greedy_run(
@@ -59,7 +51,7 @@ def greedy_run(
         node = int(rules.target[taken[-1]])
     keys, unit = of_action[taken], 1.0 if system.time is Time.DISCRETE else step
     first = keys[0] if system.clock is None else 0
-    instants = sampling_instants(unit, steps)
+    instants = unit * np.arange(steps + 1.0)
     return SwitchedRun(instants, np.array(states), rules.mode[taken], np.array([first, *keys]))
 
 

@@ -15,9 +15,17 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import DesignError
-from nrs_design.models.motion_loop import realize
+from nrs_design.models.contact.law import Element
+from nrs_design.models.linear_form import coordinates
+from nrs_design.models.motion_loop import (
+    JointMotionLoop,
+    LoadedMotionLoop,
+    Realization,
+    realize,
+)
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
 from nrs_design.simulation.time_response import Signal
@@ -51,21 +59,20 @@ class MotionStates:
     @classmethod
     def build(cls, plant: Plant, design: ControllerDesign) -> MotionStates:
         """Return the loop that the spec states, or the PD controller around the motor."""
+        motion: Realization | LoadedMotionLoop
         if plant.given_loop is not None:
-            found = realize(plant.given_loop)
-            A, C = np.array(found.A, float), np.array(found.C, float)
-            n = len(C)
-            names = tuple(Signal(f"motion {i + 1}", "") for i in range(n))
-            return cls(A, np.eye(n)[-1], np.zeros(n), C, names)
-        Km, tau = float(plant.actuator.gain), float(plant.actuator.time_constant)
-        Kp, Kd, load = float(design.motion.Kp), float(design.motion.Kd), plant.load_inertia
-        jump = Km * Kd / tau  # Velocity over reference, 1/s
-        damping = (Km * Kd + 1) / tau
-        A = np.array([[0.0, 1.0], [-Km * Kp / tau, -damping]])
-        B = np.array([jump, Km * Kp / tau - damping * jump])
-        E = np.array([0.0, 0.0 if load is None else -1 / float(load)])
-        names = Signal("theta", "rad"), Signal("motion w", "rad/s")
-        return cls(A, B, E, np.array([1.0, 0.0]), names)
+            motion = realize(plant.given_loop)
+            signals = tuple(Signal(f"motion {i + 1}", "") for i in range(motion.order))
+        else:
+            motor = plant.actuator.gain, plant.actuator.time_constant
+            gains = design.motion.Kp, design.motion.Kd
+            motion = JointMotionLoop(*gains, *motor, plant.load_inertia).placed
+            signals = Signal("theta", "rad"), Signal("motion w", "rad/s")
+        n = motion.order
+        reference, load = coordinates(n + 2)[n:]
+        rates = np.array(motion.rates(reference, load), float)
+        C = np.array(motion.output(n), float)
+        return cls(rates[:, :n], rates[:, n], rates[:, n + 1], C, signals)
 
     def at_rest(self, angle: float) -> Array:
         """Return the state at rest at an angle in rad: 0 = A x + B ref, and C x = ref."""
@@ -88,6 +95,11 @@ class Loop:
         return MotionStates.build(self.plant, self.design)
 
     @cached_property
+    def laws(self) -> dict[str, CompliantLaw]:
+        """The laws by the names of their controllers."""
+        return {c.name: c.law for c in self.design.controllers}
+
+    @cached_property
     def states(self) -> tuple[Signal, ...]:
         """Names and units of all states."""
         order = 0 if self.design.sensor.filter is None else self.design.sensor.filter.order
@@ -95,7 +107,7 @@ class Loop:
             *self.motion.signals,
             Signal("commanded position", "rad"),
             Signal("offset", "rad"),
-            *(Signal(name, unit) for name, unit in self._law_states),
+            *self._law_states,
             *(Signal(f"filtered {i + 1}", "N*m") for i in range(order)),
             *(Signal(f"damper {j + 1}", "rad") for j in self._memories),
             Signal("hand", "rad/s"),
@@ -109,17 +121,17 @@ class Loop:
         return {signal.name: i for i, signal in enumerate(self.states)}
 
     @cached_property
-    def _law_states(self) -> tuple[tuple[str, str], ...]:
-        """Names and units of the states of all laws; laws that name a state alike share it."""
-        texts = (text for c in self.design.controllers for text in c.law.states)
+    def _law_states(self) -> tuple[Signal, ...]:
+        """The states of all laws; laws that name a state alike share it."""
+        texts = (text for law in self.laws.values() for text in law.states)
         parted = (text.removesuffix("]").split(" [") for text in texts)
-        return tuple(dict.fromkeys((name, unit) for name, unit in parted))
+        return tuple(dict.fromkeys(Signal(name, unit) for name, unit in parted))
 
     @cached_property
-    def bleeding(self) -> tuple[str, ...]:
+    def _bleeding(self) -> tuple[str, ...]:
         """States of laws that stay in the reference while other controllers are active."""
-        laws = [c.law for c in self.design.controllers if c.law.bleeds]
-        return tuple(dict.fromkeys(name for law in laws for name in state_names(law.states)))
+        each = (state_names(law.states) for law in self.laws.values() if law.bleeds)
+        return tuple(dict.fromkeys(name for names in each for name in names))
 
     @cached_property
     def _memories(self) -> tuple[int, ...]:
@@ -132,13 +144,13 @@ class Loop:
         row: Array = np.eye(len(self.states))[self.index[name]]
         return row
 
-    def motion_row(self, row: Array) -> Array:
+    def _motion_row(self, row: Array) -> Array:
         """Return a row over all states from a row over those of the motion loop."""
         return np.concatenate([row, np.zeros(len(self.states) - len(row))])
 
     def start(self) -> Array:
         """Return the state at rest at the start, before the first command."""
-        z = self.motion_row(self.motion.at_rest(self.scenario.start))
+        z = self._motion_row(self.motion.at_rest(self.scenario.start))
         z[self.index["commanded position"]] = self.scenario.start
         z[self.index["one"]] = 1.0
         return z
@@ -149,28 +161,26 @@ class Loop:
         row = surface.sign * (mode.angle - surface.at * self.row("one"))
         return row - self.row(f"damper {j + 1}") if j in self._memories else row
 
-    def is_damped(self, j: int) -> bool:
-        """Tell whether the push of a surface depends on the velocity of the moment."""
-        element = self.scenario.surfaces[j].element
-        return element is not None and element.c > 0
-
-    def push(self, j: int, mode: LoopMode) -> Array:
-        """Return the row of the torque that a surface has while it is touched, towards it."""
+    def _element(self, j: int) -> Element:
+        """Return the spring and the dampers of a surface; a nonlinear one is refused."""
         surface = self.scenario.surfaces[j]
-        element = surface.element
-        if element is None or not surface.is_linear:
-            what = "has others beside it" if surface.arms else "is not linear"
+        if surface.element is None:
             raise DesignError(
-                f"{surface.environment} {what}: the exact engine does not simulate it",
+                f"{surface.environment} is not linear: the exact engine does not simulate it",
                 remedy="use --engine sampled",
                 at=("environments", surface.environment),
             )
-        return element.k * self.depth(j, mode) + element.c * surface.sign * mode.velocity
+        return surface.element
 
-    def mode(self, controller: str, touched: Sequence[int]) -> LoopMode:
-        """Return the loop with a controller in force, touching surfaces of some indices."""
-        active = next(c for c in self.design.controllers if c.name == controller)
-        return _Closing(self, active, tuple(touched)).mode()
+    def is_damped(self, j: int) -> bool:
+        """Tell whether the push of a surface depends on the velocity of the moment."""
+        return self._element(j).c > 0
+
+    def push(self, j: int, mode: LoopMode) -> Array:
+        """Return the row of the torque that a surface has while it is touched, towards it."""
+        element = self._element(j)
+        velocity = self.scenario.surfaces[j].sign * mode.velocity
+        return element.k * self.depth(j, mode) + element.c * velocity
 
     def signal(self, name: str, mode: LoopMode, direction: int) -> Array:
         """Return the row of a signal that the mode logic sees, named as in `Condition`.
@@ -183,101 +193,91 @@ class Loop:
             return direction * mode.torque
         return self.depth(int(name.removeprefix(DEPTH)), mode)
 
-
-def state_names(states: Sequence[str]) -> list[str]:
-    """Return the names of states of a law, which writes them with their units."""
-    return [text.split(" [")[0] for text in states]
-
-
-@dataclass(frozen=True)
-class _Closing:
-    """A loop that is being closed around one controller."""
-
-    loop: Loop
-    controller: Controller
-    touched: tuple[int, ...]
-
-    def mode(self) -> LoopMode:
-        loop, law, motion = self.loop, self.controller.law, self.loop.motion
-        n, nothing = len(loop.states), np.zeros(len(loop.states))
+    def mode(self, controller: str, touched: Sequence[int]) -> LoopMode:
+        """Return the loop with a controller in force, touching surfaces of some indices."""
+        law, motion = self.laws[controller], self.motion
+        n, nothing = len(self.states), np.zeros(len(self.states))
         # The angle does not depend on the reference of the moment, the velocity does.
-        still = LoopMode(np.zeros((n, n)), loop.motion_row(motion.C), nothing, nothing, nothing)
-        springs = self._torque(still)
-        reference = loop.row("commanded position")
+        still = LoopMode(np.zeros((n, n)), self._motion_row(motion.C), nothing, nothing, nothing)
+        reference = self.row("commanded position")
         if law.commands == "velocity":
-            reference = reference + loop.row("offset")
+            reference = reference + self.row("offset")
         else:
-            if self._takes_at_once() and any(map(loop.is_damped, self.touched)):
+            if self._takes_at_once(law) and any(map(self.is_damped, touched)):
                 raise DesignError(
-                    f"{self.controller.name} corrects the position by a force that depends on the "
+                    f"{controller} corrects the position by a force that depends on the "
                     "velocity: that is not modelled",
                     remedy="let it touch elastic environments only, filter the force, or use "
                     "--engine sampled",
-                    at=("controllers", self.controller.name),
+                    at=("controllers", controller),
                 )
-            reference = reference + self._respond(self._law_input(springs))[0]
+            springs = self._law_input(law, self._torque(still, touched))
+            reference = reference + self._respond(law, springs)[0]
         if not law.bleeds:
-            reference = sum((loop.row(name) for name in loop.bleeding), reference)
-        velocity = loop.motion_row(motion.C @ motion.A) + float(motion.C @ motion.B) * reference
+            reference = sum(map(self.row, self._bleeding), reference)
+        velocity = self._motion_row(motion.C @ motion.A) + float(motion.C @ motion.B) * reference
         moving = replace(still, velocity=velocity, reference=reference)
-        closed = replace(moving, torque=self._torque(moving))
-        self._fill(closed)
+        closed = replace(moving, torque=self._torque(moving, touched))
+        self._fill(closed, law, touched)
         return closed
 
-    def _takes_at_once(self) -> bool:
+    def _takes_at_once(self, law: CompliantLaw) -> bool:
         """Tell whether the command depends on the force of the moment."""
-        n = len(self.loop.states)
-        none, some = (self._respond(np.full(n, force))[0] for force in (0.0, 1.0))
-        return self.loop.design.sensor.filter is None and bool((none != some).any())
+        n = len(self.states)
+        none, some = (self._respond(law, np.full(n, force))[0] for force in (0.0, 1.0))
+        return self.design.sensor.filter is None and bool((none != some).any())
 
-    def _torque(self, mode: LoopMode) -> Array:
-        loop = self.loop
-        rows = (loop.scenario.surfaces[j].sign * loop.push(j, mode) for j in self.touched)
-        return np.asarray(sum(rows, np.zeros(len(loop.states))))
+    def _torque(self, mode: LoopMode, touched: Sequence[int]) -> Array:
+        """Return the row of the torque of the contacts on the robot."""
+        rows = (self.scenario.surfaces[j].sign * self.push(j, mode) for j in touched)
+        return np.asarray(sum(rows, np.zeros(len(self.states))))
 
-    def _law_input(self, torque: Array) -> Array:
+    def _law_input(self, law: CompliantLaw, torque: Array) -> Array:
         """Return the row of the force that the law gets."""
-        loop, law = self.loop, self.controller.law
-        low_pass = loop.design.sensor.filter
-        force = torque if low_pass is None else loop.row(f"filtered {low_pass.order}")
+        low_pass = self.design.sensor.filter
+        force = torque if low_pass is None else self.row(f"filtered {low_pass.order}")
         if law.commands == "velocity":
-            return force + float(law.spring) * loop.row("offset")
-        return force - loop.scenario.wanted_torque * loop.row("one")
+            return force + float(law.spring) * self.row("offset")
+        return force - self.scenario.wanted_torque * self.row("one")
 
-    def _respond(self, force: Array) -> tuple[Array, list[Array]]:
-        law = self.controller.law
-        states = [self.loop.row(name).tolist() for name in state_names(law.states)]
+    def _respond(self, law: CompliantLaw, force: Array) -> tuple[Array, list[Array]]:
+        """Return the row of the command of a law, and those of the rates of its states."""
+        states = [self.row(name).tolist() for name in state_names(law.states)]
         command, rates = law.respond(force.tolist(), states)
         return np.array(command, float), [np.array(rate, float) for rate in rates]
 
-    def _fill(self, mode: LoopMode) -> None:
+    def _fill(self, mode: LoopMode, law: CompliantLaw, touched: Sequence[int]) -> None:
         """Write the rates of all states into the rows of A."""
-        loop, law, index, A = self.loop, self.controller.law, self.loop.index, mode.A
-        motion, m = loop.motion, len(loop.motion.C)
+        index, A, motion = self.index, mode.A, self.motion
+        m = len(motion.C)
         A[:m, :m] = motion.A
         A[:m] += np.outer(motion.B, mode.reference) + np.outer(motion.E, mode.torque)
-        low_pass, before = loop.design.sensor.filter, mode.torque
+        low_pass, before = self.design.sensor.filter, mode.torque
         if low_pass is not None:
             for name in (f"filtered {i + 1}" for i in range(low_pass.order)):
-                A[index[name]] = float(low_pass.pole) * (before - loop.row(name))
-                before = loop.row(name)
-        command, rates = self._respond(self._law_input(mode.torque))
-        idle = loop.spec.idle_states
+                A[index[name]] = float(low_pass.pole) * (before - self.row(name))
+                before = self.row(name)
+        command, rates = self._respond(law, self._law_input(law, mode.torque))
+        idle = self.spec.idle_states
         decay = 0.0 if idle is None else idle.decay.si
-        for name in ("offset", *(name for name, _ in loop._law_states)):
-            A[index[name]] = -decay * loop.row(name)
+        for name in ("offset", *(signal.name for signal in self._law_states)):
+            A[index[name]] = -decay * self.row(name)
         for name, rate in zip(state_names(law.states), rates, strict=True):
             A[index[name]] = rate
         if law.commands == "velocity":
             A[index["offset"]] = command
         if not law.holds_hand:
-            A[index["commanded position"]] = loop.row("hand")
-        for j in loop._memories:
-            element, own = loop.scenario.surfaces[j].element, loop.row(f"damper {j + 1}")
-            assert element is not None
-            pushed = element.k * loop.depth(j, mode) if j in self.touched else 0.0
+            A[index["commanded position"]] = self.row("hand")
+        for j in self._memories:
+            element, own = self._element(j), self.row(f"damper {j + 1}")
+            pushed = element.k * self.depth(j, mode) if j in touched else 0.0
             A[index[f"damper {j + 1}"]] = (pushed - element.h * own) / element.b
-        profile = loop.scenario.profile
-        A[index["hand"]] = loop.row("slope")
-        swing = loop.row("hand") - profile.mean * loop.row("one")
+        profile = self.scenario.profile
+        A[index["hand"]] = self.row("slope")
+        swing = self.row("hand") - profile.mean * self.row("one")
         A[index["slope"]] = -(profile.omega**2) * swing
+
+
+def state_names(states: Sequence[str]) -> list[str]:
+    """Return the names of states of a law, which writes them with their units."""
+    return [text.split(" [")[0] for text in states]

@@ -34,16 +34,6 @@ def mean(t: Array, y: Array) -> float:
     return integral(t, y) / length if length > 0 else float(y[0])
 
 
-def peak(y: Array) -> float:
-    """Return the largest absolute value, ``max |y|``: the peak torque, held against T_max (6.2)."""
-    return float(np.abs(y).max())
-
-
-def mean_speed(t: Array, velocity: Array) -> float:
-    """Return ``1/T int |v| dt``: agility of a robot that is led by hand (thesis 5.1.3, 7.2)."""
-    return mean(t, np.abs(velocity))
-
-
 def rms(t: Array, y: Array) -> float:
     """Return ``sqrt(1/T int y^2 dt)``; the square of a straight line is integrated exactly."""
     length = float(t[-1] - t[0])
@@ -110,14 +100,6 @@ def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ..
         elif v * F > 0:
             begin = None
     return tuple(found)
-
-
-def gain_in_time(before: float, after: float) -> float:
-    """Return by which share a task is done sooner, ``1 - after/before`` (agility, thesis 5.1.3).
-
-    Execution times are in s; the thesis finds about 20 % for the withdrawal.
-    """
-    return 1 - after / before
 
 
 @dataclass(frozen=True, slots=True)

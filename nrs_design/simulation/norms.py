@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,33 +49,13 @@ def polynomial_norm(Q: IntegerMatrix, degree: int, order: int) -> Norm:
 
     Q is the Gram matrix of V, in the monomials as `lift.monomials` orders them.
     """
-    basis = np.array(monomials(order, degree))
-    exponents = diagonal_exponents(Q)
-    values, vectors = np.linalg.eigh(scaled_form(Q, exponents))
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    # Only ratios of norms are shown, so the largest weight may be one.
-    weights = np.ldexp(1.0, np.array(exponents) - max(exponents))
+    basis, (gram,) = np.array(monomials(order, degree)), scaled_matrices(Q)
 
     def norm(states: Array) -> Array:
-        z = np.prod(states[..., None, :] ** basis, axis=-1) * weights
-        return np.asarray(np.linalg.norm(z @ root, axis=-1) ** (1 / degree))
+        z = np.prod(states[..., None, :] ** basis, axis=-1)
+        return np.asarray(np.maximum((z @ gram * z).sum(axis=-1), 0.0) ** (1 / (2 * degree)))
 
     return norm
-
-
-def diagonal_exponents(Q: IntegerMatrix) -> list[int]:
-    """Return e such that ``Q_ii / 4^e_i`` is between a half and four."""
-    return [Q[i][i].bit_length() // 2 for i in range(len(Q))]
-
-
-def scaled_form(M: IntegerMatrix, exponents: Sequence[int]) -> Array:
-    """Return ``M_ij / 2^(e_i + e_j)``: integers may be beyond the range of doubles."""
-    return np.array(
-        [
-            [float(Fraction(entry, 1 << (a + b))) for b, entry in zip(exponents, row, strict=True)]
-            for a, row in zip(exponents, M, strict=True)
-        ]
-    )
 
 
 def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:

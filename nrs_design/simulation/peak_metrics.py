@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 # Limited quantity to metric of `nrs_design.simulation.summary`.
-PEAKS: Mapping[str, str] = MappingProxyType(
-    {"torque": "peak_torque", "deflection": "peak_depth", "velocity": "peak_velocity"}
-)
-UNITS: Mapping[str, str] = MappingProxyType(
-    {"torque": "N*m", "deflection": "rad", "velocity": "rad/s"}
-)
+PEAKS: Mapping[str, str] = {
+    "torque": "peak_torque",
+    "deflection": "peak_depth",
+    "velocity": "peak_velocity",
+}
+UNITS: Mapping[str, str] = {"torque": "N*m", "deflection": "rad", "velocity": "rad/s"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -17,6 +17,8 @@ from nrs_design.simulation.switched import SwitchedRun, expm, fine_step, mode_ma
 
 # Mode index and time spent in it, in s or steps.
 Steps = Sequence[tuple[int, float]]
+# Mode index and duration of a part of a step, with its map.
+_Piece = tuple[int, float, Array]
 
 _SAMPLES = 4000
 _FEWEST, _MOST = 3, 30
@@ -47,16 +49,19 @@ def periodic_run(
     not too far), nor after thirty. It begins in the direction of the nearest eigenvalue of one
     period, by default the largest. `edges`: which reset each step takes, where there is a choice.
     """
-    legs = _legs(system, steps, edges)
-    monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
+    modes, times, factors = zip(*_pieces(system, steps, edges), strict=True)
+    monodromy = reduce(lambda product, factor: factor @ product, factors)
     values, vectors = np.linalg.eig(monodromy)
     leading = int(np.abs(values).argmax())
     if eigenvalue is not None:
         leading = int(np.abs(values - eigenvalue).argmin())
     radius = float(np.abs(values[leading]))
     initial = vectors[:, leading].real
-    initial = initial / np.linalg.norm(initial)
-    response = _repeat(legs, initial, _periods(radius, sum(leg.pieces for leg in legs)))
+    states, periods = [initial / np.linalg.norm(initial)], _periods(radius, len(factors))
+    for factor in factors * periods:
+        states.append(factor @ states[-1])
+    instants = np.cumsum([0.0, *times * periods])
+    response = SwitchedRun(instants, np.array(states), np.array(modes * periods))
     return PeriodicRun(response, sum(time for _, time in steps), radius)
 
 
@@ -76,49 +81,21 @@ def time_of_growth(eigenvalue: complex, system: SwitchedSystem) -> float:
     return math.ceil(min(times, longest)) if discrete else min(times, longest)
 
 
-@dataclass(frozen=True)
-class _Leg:
-    """One step of the period: its mode, and its flow in pieces (the last with the reset)."""
-
-    mode: int
-    piece: Array
-    last: Array
-    pieces: int
-    time: float
-
-    @property
-    def whole(self) -> Array:
-        return np.asarray(self.last @ np.linalg.matrix_power(self.piece, self.pieces - 1))
-
-
-def _legs(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> list[_Leg]:
+def _pieces(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> Iterator[_Piece]:
+    """Yield a period in pieces, the last of each step with the reset that follows it."""
     fine, maps, matrices = fine_step(system), system.switching.maps(), mode_matrices(system)
     # Many steps in a period leave fewer samples for each.
     most = max(1, _SAMPLES // (_FEWEST * len(steps)))
-    successors = [mode for mode, _ in (*steps[1:], *steps[:1])]
-    legs = []
-    for k, ((mode, time), successor) in enumerate(zip(steps, successors, strict=True)):
+    for k, (mode, time) in enumerate(steps):
         A, discrete = matrices[mode], system.time is Time.DISCRETE
-        pieces = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
-        piece = A if discrete else expm(A * (time / pieces))
+        count = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
+        factor = A if discrete else expm(A * (time / count))
+        yield from [(mode, time / count, factor)] * (count - 1)
+        successor, _ = steps[(k + 1) % len(steps)]
         resets = maps.get((system.modes[mode].name, system.modes[successor].name))
-        edge = edges[k] if edges else 0
-        last = piece if resets is None else np.array(resets[edge].floats()) @ piece
-        legs.append(_Leg(mode, piece, last, pieces, time))
-    return legs
-
-
-def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> SwitchedRun:
-    states, modes, instants = [initial], [], [0.0]
-    for _ in range(periods):
-        for leg in legs:
-            begin = instants[-1]
-            for k in range(1, leg.pieces + 1):
-                factor = leg.last if k == leg.pieces else leg.piece
-                states.append(factor @ states[-1])
-                modes.append(leg.mode)
-                instants.append(begin + leg.time * k / leg.pieces)
-    return SwitchedRun(np.array(instants), np.array(states), np.array(modes))
+        if resets is not None:
+            factor = np.array(resets[edges[k] if edges else 0].floats()) @ factor
+        yield mode, time / count, factor
 
 
 def _periods(radius: float, samples: int) -> int:

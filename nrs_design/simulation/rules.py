@@ -68,7 +68,7 @@ def fitting_step(system: SwitchedSystem, step: float) -> float:
 
 def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
     """Return the fewest steps of a stay and the most; None if there is no number between."""
-    # A dwell time next to a whole number of steps is that number.
+    # Rounding of a dwell time adds no step.
     fewest = max(1, math.ceil(stay.shortest / step - Fraction(1, 10**9)))
     if stay.longest is None:
         return fewest, None

@@ -23,8 +23,8 @@ INPUTS = (Signal("hand", "rad/s"),)
 
 # A controller that is left sooner has chattered, in s.
 CHATTER = 0.01
-# Steps of an engine, and events, after which a run is stopped.
-MAX_STEPS, MAX_EVENTS = 5_000_000, 200_000
+# Steps of an engine after which a run is stopped, and steps between two reports of progress.
+MAX_STEPS, PROGRESS_STEPS = 5_000_000, 20_000
 # Steps of the exact engine that one event costs.
 EVENT_STEPS = 250
 
@@ -44,7 +44,7 @@ class Run:
     """A simulated scenario."""
 
     scenario: str  # Its name
-    engine: str  # What simulated it
+    engine: str  # Name of the engine
     response: TimeResponse  # Up to where the run came
     # Times in s at which a controller took over, and which.
     switches: tuple[tuple[float, str], ...]
@@ -56,7 +56,7 @@ class Run:
     refused: int = 0  # Samples that the law refused, because an input was beyond its limits
     saturated: int = 0  # Samples at which the command of the motor met its limit
     stopped: str | None = None  # Why the run ended before its time
-    left_out: tuple[str, ...] = LEFT_OUT  # What is not in it
+    left_out: tuple[str, ...] = LEFT_OUT  # Effects without a model
     outer: float | None = None  # Period of filter and admittance in s, which may be another
     missed: int | None = None  # Samples with a missed deadline; None without a rule of misses
 

@@ -11,7 +11,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
 from nrs_design.simulation.run import MAX_STEPS, Run
-from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
+from nrs_design.simulation.sampled_axis import SampledAxis, draw_samples
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 
@@ -29,12 +29,11 @@ def simulate_sampled(
     axis = _axis(spec, plant, design, scenario)
     wanted = math.floor(scenario.duration / axis.T + 1e-9) + 1
     count = min(wanted, max_steps)
-    inputs = SampleInputs.of(scenario, axis.sampling, axis.late, count)
+    samples = draw_samples(scenario, axis.sampling, axis.late, count)
     stopped = None
     if count < wanted:
-        last = float(inputs.times[-1])
-        stopped = f"{max_steps} samples by {last:.6g} s: the budget is used up"
-    return axis.run(inputs, stopped, tell)
+        stopped = f"{max_steps} samples by {samples[-1].time:.6g} s: the budget is used up"
+    return axis.run(samples, stopped, tell)
 
 
 def _axis(

@@ -11,18 +11,19 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.replica import StepProgram
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress
 from nrs_design.simulation.motor import DrivenJoint, Motor
-from nrs_design.simulation.run import INPUTS, OUTPUTS, Run
-from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Array, Scenario
+from nrs_design.simulation.run import INPUTS, OUTPUTS, PROGRESS_STEPS, Run
+from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Scenario
 from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
 from nrs_design.spec.misses import automaton_of
@@ -32,54 +33,48 @@ from nrs_design.spec.sampling import SamplingSpec
 PARTS = 8
 # Probability of a miss where the rule allows one.
 MISSED = 0.5
-# Samples between two progress reports.
-_OFTEN = 20_000
 # States of the motion loop; all others belong to the outer loop.
 _OF_MOTION = frozenset({"error_before"})
 
 
-@dataclass(frozen=True, slots=True)
-class SampleInputs:
-    """Instants, commands, noise and delays, for every sample."""
+class SampleInputs(NamedTuple):
+    """Inputs of a sample: command, errors and delays."""
 
-    # times, hand, noise: shape (N,). Instants in s, commanded velocities in rad/s, errors of the
-    # torque in N m.
-    times: Array
-    hand: Array
-    noise: Array
-    ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
-    lates: Array  # Shape (N,). From a sample to its command, in s.
-    missed: NDArray[np.bool_]  # Shape (N,). Samples whose deadline is missed.
+    time: float  # In s
+    hand: float  # Commanded velocity in rad/s
+    noise: float  # Error of the torque in N m
+    age: int  # Age of the force sample
+    late: float  # From the sample to its command, in s
+    missed: bool  # True for a missed deadline
 
-    @classmethod
-    def of(
-        cls,
-        scenario: Scenario,
-        sampling: SamplingSpec,
-        late: tuple[float, float],
-        count: int,
-    ) -> SampleInputs:
-        """Draw the inputs of N samples from the seed of the scenario.
 
-        `late` holds the times from a sample to its command, in s. Where a rule allows misses, every
-        second sample or so is missed.
-        """
-        rng = np.random.default_rng(scenario.seed)
-        step, (youngest, oldest) = float(sampling.step), sampling.delay
-        shifted = scenario.errors.jitter * step * rng.random(count)
-        noise = scenario.errors.force_noise * rng.standard_normal(count)
-        ages = rng.integers(youngest, oldest + 1, count)
-        times = step * np.arange(count) + shifted
-        lates = late[0] + (late[1] - late[0]) * rng.random(count)
-        missed = np.zeros(count, dtype=bool)
-        if sampling.misses is not None:
-            automaton, state = automaton_of(*sampling.misses.window), 0
-            wanted = rng.random(count) < MISSED
-            for k in range(count):
-                after = automaton.miss[state]
-                missed[k] = wanted[k] and after is not None
-                state = automaton.hit[state] if after is None or not wanted[k] else after
-        return cls(times, scenario.profile.at(times), noise, ages, lates, missed)
+def draw_samples(
+    scenario: Scenario, sampling: SamplingSpec, late: tuple[float, float], count: int
+) -> list[SampleInputs]:
+    """Draw so many samples from the seed of a scenario.
+
+    `late` holds the times from a sample to its command, in s. Where a rule allows misses, every
+    second sample or so is missed.
+    """
+    rng = np.random.default_rng(scenario.seed)
+    step, (youngest, oldest) = float(sampling.step), sampling.delay
+    shifted = scenario.errors.jitter * step * rng.random(count)
+    noise = scenario.errors.force_noise * rng.standard_normal(count)
+    ages = rng.integers(youngest, oldest + 1, count)
+    times = step * np.arange(count) + shifted
+    lates = late[0] + (late[1] - late[0]) * rng.random(count)
+    missed = np.zeros(count, dtype=bool)
+    if sampling.misses is not None:
+        automaton, state = automaton_of(*sampling.misses.window), 0
+        wanted = rng.random(count) < MISSED
+        for k in range(count):
+            after = automaton.miss[state]
+            missed[k] = wanted[k] and after is not None
+            state = automaton.hit[state] if after is None or not wanted[k] else after
+    columns = (times, scenario.profile.at(times), noise, ages, lates, missed)
+    return [
+        SampleInputs(*row) for row in zip(*(column.tolist() for column in columns), strict=True)
+    ]
 
 
 @dataclass
@@ -88,7 +83,7 @@ class SampledAxis:
 
     plant: Plant  # Its motor
     design: ControllerDesign  # Gains that ship
-    scenario: Scenario  # What happens to it
+    scenario: Scenario  # Command, surfaces and errors
     program: StepProgram  # Its law
     sampling: SamplingSpec  # Period and delay of the law
     # Shortest and longest time from a sample to where its command takes effect, in s.
@@ -131,21 +126,18 @@ class SampledAxis:
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
 
-    def run(self, inputs: SampleInputs, stopped: str | None, tell: Progress) -> Run:
+    def run(self, samples: Sequence[SampleInputs], stopped: str | None, tell: Progress) -> Run:
         """Run all samples; `stopped` says why the run ends before its time."""
-        times = inputs.times.tolist()
-        drawn = (inputs.hand, inputs.noise, inputs.ages, inputs.lates, inputs.missed)
-        columns = (column.tolist() for column in drawn)
-        rows = zip(times, [*times[1:], times[-1] + self.T], *columns, strict=True)
-        for k, (t, following, *sample) in enumerate(rows):
-            self.sample(t, *sample)
-            self.move(following - t)
-            if k % _OFTEN == 0:
-                tell(f"{t:.3g} s")
+        ends = [*(sample.time for sample in samples[1:]), samples[-1].time + self.T]
+        for k, (sample, end) in enumerate(zip(samples, ends, strict=True)):
+            self._take(sample)
+            self._move(end - sample.time)
+            if k % PROGRESS_STEPS == 0:
+                tell(f"{sample.time:.3g} s")
         return Run(
             self.scenario.name,
             "sampled",
-            self._response(inputs),
+            self._response(),
             tuple(self.switches),
             tuple(self.tissue.contacts),
             len(self.rows),
@@ -154,38 +146,34 @@ class SampledAxis:
             self.saturated,
             stopped,
             outer=float(self.sampling.outer),
-            missed=int(inputs.missed.sum()) if self.sampling.misses else None,
+            missed=sum(s.missed for s in samples) if self.sampling.misses else None,
         )
 
-    def sample(
-        self, t: float, hand: float, noise: float, age: int, late: float, missed: bool
-    ) -> None:
-        """Run the law once; its command takes effect `late` s after the sample.
-
-        The hand is in rad/s, the noise of the torque in N m; `age` is that of the force sample.
-        Where the deadline is missed, the law is not run, and the command is held or zero.
-        """
-        tissue = self.tissue
+    def _take(self, sample: SampleInputs) -> None:
+        """Run the law once; where the deadline is missed, its command is held or zero instead."""
+        tissue, hand = self.tissue, sample.hand
         torque = tissue.torque(self.theta, self.omega)
-        tissue.note(t)
+        tissue.note(sample.time)
         depths = tissue.depths(self.theta)
         outer = self.turn % self.outer_turn == 0
         if outer:
-            self.buffer.appendleft(_coarse(torque + noise, self.scenario.errors.force_step))
-        felt, before = self.buffer[age], self.states
-        if missed:
+            read = _coarse(torque + sample.noise, self.scenario.errors.force_step)
+            self.buffer.appendleft(read)
+        felt, before = self.buffer[sample.age], self.states
+        if sample.missed:
             assert self.sampling.misses is not None
             self.command = self.command if self.sampling.misses.command == "hold" else 0.0
         else:
             if outer:
-                self._decide(t, hand, felt, depths)
+                self._decide(sample.time, hand, felt, depths)
             self._compute(hand, felt, outer=outer)
         self.turn += 1
         now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), self.command)
-        self.rows.append((self.modes[self.controller], *now, *map(float, before)))
+        mode = self.modes[self.controller]
+        self.rows.append((sample.time, hand, mode, *now, *map(float, before)))
         if not self.holds[self.controller]:
             self.commanded += self.T * hand
-        self.sent.append((late, self.command))
+        self.sent.append((sample.late, self.command))
 
     def _compute(self, hand: float, felt: float, *, outer: bool) -> None:
         """Run the law once; states of a loop without a sample now stay."""
@@ -235,13 +223,13 @@ class SampledAxis:
             self.controller = target
             self.switches.append((t, target))
 
-    def move(self, width: float) -> None:
+    def _move(self, width: float) -> None:
         """Let motor and tissue move until the next sample, in s, under the commands that come."""
         now = 0.0
         for time, command in self._coming(width):
-            self.glide(self.in_force, time - now)
+            self._glide(time - now)
             self.in_force, now = command, time
-        self.glide(self.in_force, width - now)
+        self._glide(width - now)
 
     def _coming(self, width: float) -> list[tuple[float, float]]:
         """Take the commands that take effect within a time; one that a newer overtakes does not."""
@@ -259,30 +247,29 @@ class SampledAxis:
         # Behind each there are newer and later ones only.
         return coming[::-1]
 
-    def glide(self, command: float, width: float) -> None:
-        """Let motor and tissue move for a time in s."""
-        if self.parts == 1:
-            self.theta, self.omega = self.motor.after(self.theta, self.omega, command, width)
-            return
-        part = width / self.parts
+    def _glide(self, width: float) -> None:
+        """Let motor and tissue move for a time in s, under the command in force."""
+        tissue, part = self.tissue, width / self.parts
         for _ in range(self.parts):
-            drive = command - self.load * self.tissue.torque(self.theta, self.omega)
-            before = self.tissue.depths(self.theta)
+            drive = self.in_force
+            if self.load:
+                drive -= self.load * tissue.torque(self.theta, self.omega)
+            before = tissue.depths(self.theta)
             self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
-            self.tissue.creep(before, self.tissue.depths(self.theta), part)
+            tissue.creep(before, tissue.depths(self.theta), part)
 
-    def _response(self, inputs: SampleInputs) -> TimeResponse:
-        law, last = self.program.law, len(OUTPUTS) + 2
-        rows = np.array(self.rows, dtype=float).T
+    def _response(self) -> TimeResponse:
+        law, first, axis = self.program.law, 3, self.design.axis
+        last, rows = first + len(OUTPUTS) + 1, np.array(self.rows, dtype=float).T
         return TimeResponse(
-            inputs.times,
-            rows[1:last],
+            rows[0],
+            rows[first:last],
             rows[last:],
-            inputs.hand[None],
-            (*on_axis(OUTPUTS, self.design.axis), Signal("command", self.design.command)),
+            rows[1:2],
+            (*on_axis(OUTPUTS, axis), Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
-            on_axis(INPUTS, self.design.axis),
-            rows[0].astype(np.int64),
+            on_axis(INPUTS, axis),
+            rows[2].astype(np.int64),
             law.modes,
         )
 

@@ -10,7 +10,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices
-from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.simulation.switched import SwitchedRun, all_modes
 
 
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
@@ -20,8 +20,7 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
-    free = () if system.contact is None else system.contact.free
-    A = np.array([mode.A.floats() for mode in (*system.modes, *free)])
+    A = np.array([mode.A.floats() for mode in all_modes(system).modes])
     columns = [np.array([c.floats() for c in s.columns])[:, :, 0] for s in saturation.signals]
     rows = _rows(saturation)
 
@@ -29,7 +28,7 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
         moved = np.einsum("kij,kj->ki", A, states)
         signals = _signals(saturation, rows, states)
         for column, (_, cut, linear) in zip(columns, signals, strict=True):
-            moved = moved + column * (cut - linear)[:, None]
+            moved += column * (cut - linear)[:, None]
         return np.asarray(moved)
 
     return rates
@@ -39,12 +38,10 @@ def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
     """Return in which share of the steps of a run each signal is cut off, by its name."""
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
-    rows = [row[run.mode] for row in _rows(saturation)]
-    signals = _signals(saturation, rows, run.state[:-1])
-    return {
-        signal.name: float(np.mean(cut != argument))
-        for signal, (argument, cut, _) in zip(saturation.signals, signals, strict=True)
-    }
+    signals = _signals(saturation, [row[run.mode] for row in _rows(saturation)], run.state[:-1])
+    names = (signal.name for signal in saturation.signals)
+    shares = (float(np.mean(cut != argument)) for argument, cut, _ in signals)
+    return dict(zip(names, shares, strict=True))
 
 
 def _rows(saturation: Saturation) -> list[Array]:
@@ -56,15 +53,14 @@ def _signals(
     saturation: Saturation, rows: Sequence[Array], states: Array
 ) -> list[tuple[Array, Array, Array]]:
     """Return argument, saturated value and linear value of each signal at some states."""
-    n, found = states.shape[1], list[tuple[Array, Array, Array]]()
+    found: list[tuple[Array, Array, Array]] = []
+    # What a signal depends on: the states, and the signals before it, cut off and not.
+    cut = linear = states
     for signal, row in zip(saturation.signals, rows, strict=True):
-        argument = np.einsum("kj,kj->k", row[:, :n], states)
-        linear = argument.copy()
-        for i, (_, cut, whole) in enumerate(found):
-            argument += row[:, n + i] * cut
-            linear += row[:, n + i] * whole
+        argument, whole = ((row[:, : x.shape[1]] * x).sum(axis=1) for x in (cut, linear))
         limit = float(signal.limit)
-        found.append((argument, np.clip(argument, -limit, limit), linear))
+        found.append((argument, np.clip(argument, -limit, limit), whole))
+        cut, linear = (np.column_stack([x, y]) for x, y in ((cut, found[-1][1]), (linear, whole)))
     return found
 
 
@@ -74,8 +70,7 @@ def saturated_step(system: SwitchedSystem, step: float) -> Callable[[Array, Indi
     By the classical Runge-Kutta method in continuous time; in discrete time the step is that of the
     system.
     """
-    rates = saturated_rates(system)
-    total = len(system.modes) + (0 if system.contact is None else len(system.contact.free))
+    rates, total = saturated_rates(system), len(all_modes(system).modes)
 
     def advance(x: Array, modes: Indices) -> Array:
         x = np.tile(x, (total, 1))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.models.contact.law import AbstractContactLaw, Element
+from nrs_design.models.contact.law import AbstractNonlinearLaw, Element
 
 Array = NDArray[np.float64]
 
@@ -50,20 +51,15 @@ class Profile:
     def through(cls, times: Array, velocities: Array) -> Profile:
         """Return straight lines between points, in s and rad/s; the last velocity is kept.
 
-        Twice the same time is a jump. A ValueError if the times do not begin at zero or fall, or a
-        number is not finite.
+        Times rise from zero; twice the same one is a jump.
         """
-        if not (np.isfinite(times).all() and np.isfinite(velocities).all()):
-            raise ValueError("a time or a velocity is not a finite number")
-        if times[0] != 0 or (np.diff(times) < 0).any():
-            raise ValueError("times begin at zero and never fall")
-        pieces = []
-        for i, (time, value) in enumerate(zip(times.tolist(), velocities.tolist(), strict=True)):
-            step = times[i + 1] - time if i + 1 < len(times) else math.inf
-            if step > 0:
-                slope = 0.0 if math.isinf(step) else float(velocities[i + 1] - value) / float(step)
-                pieces.append(Piece(time, value, slope))
-        return cls(tuple(pieces))
+        points = zip(times.tolist(), velocities.tolist(), strict=True)
+        pieces = [
+            Piece(time, value, (further - value) / (end - time))
+            for (time, value), (end, further) in pairwise(points)
+            if end > time
+        ]
+        return cls((*pieces, Piece(float(times[-1]), float(velocities[-1]), 0.0)))
 
     def at(self, time: Array) -> Array:
         """Return the velocity at times in s, after jumps."""
@@ -83,24 +79,15 @@ class Surface:
     """Where an environment begins; it pushes and never pulls."""
 
     environment: str  # Its name
-    law: AbstractContactLaw  # At the pivot, at fixed parameters
-    # Springs and dampers of the law; None for a nonlinear law.
-    element: Element | None
+    # At the pivot, at fixed parameters: springs and dampers of a linear law, or a nonlinear one.
+    law: Element | AbstractNonlinearLaw
     at: float  # Angle in rad
     sign: int  # 1 if rising angles lead into it, else -1
-    # Further parts of the same body: the sum of all forces pushes.
-    arms: tuple[Element, ...] = ()
-    beside: tuple[str, ...] = ()  # The environments of these, in their order
 
     @property
-    def elements(self) -> tuple[Element, ...]:
-        """Springs and dampers of the body; none for a nonlinear law."""
-        return () if self.element is None else (self.element, *self.arms)
-
-    @property
-    def is_linear(self) -> bool:
-        """Whether the exact engine knows it."""
-        return self.element is not None and not self.arms
+    def element(self) -> Element | None:
+        """Springs and dampers of a linear law, which alone the exact engine knows."""
+        return self.law if isinstance(self.law, Element) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +121,7 @@ class Control:
     stays: Mapping[str, float] = field(default_factory=dict)
     # Times in s at which a controller takes over, whatever signals say.
     schedule: tuple[tuple[float, str], ...] = ()
-    # Whether it is the mode logic of the spec, which exported programs contain.
+    # True for the mode logic of the spec, as in exported programs.
     ships: bool = False
 
 
@@ -162,6 +149,6 @@ class Scenario:
     start: float = 0.0  # Angle at which the axis rests at first, in rad
     wanted_torque: float = 0.0  # Fd of force controllers in N m, towards rising angles
     errors: Errors = Errors()  # For the sampled engine
-    seed: int = 0  # Of noise, jitter and varying delay
+    seed: int = 0  # Seed of noise, jitter and varying delay
     # Limits of the run: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     limits: Mapping[str, float] = field(default_factory=dict)

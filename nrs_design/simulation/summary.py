@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.simulation import metrics
 from nrs_design.simulation.run import Run
-from nrs_design.simulation.scenario import Scenario
+from nrs_design.simulation.scenario import Array, Scenario
 from nrs_design.spec import InteractionDesignSpec
 
 # Shorter stays of force control have no steady state, in s.
@@ -22,22 +22,21 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
     t, torque, velocity = response.t, response["torque"], response["velocity"]
     limit, desired = spec.limits.torque.si, spec.limits.torque.si / spec.limits.velocity.si
     size = np.abs(torque)
-    out = metrics.withdrawal_times(t, response["hand"], torque)
-    touched = size > 0
     return {
         "duration": float(t[-1]),
-        "peak_torque": metrics.peak(torque),
+        "peak_torque": float(size.max()),
         "torque_limit": limit,
         "time_above_limit": metrics.time_above(t, size, limit),
         "peak_depth": float(response["depth"].max()),
-        "peak_velocity": metrics.peak(velocity),
-        "mean_speed": metrics.mean_speed(t, velocity),
+        "peak_velocity": float(np.abs(velocity).max()),
+        # Agility of a robot that is led by hand (thesis 5.1.3, 7.2).
+        "mean_speed": metrics.mean(t, np.abs(velocity)),
         "time_in_contact": metrics.time_above(t, size, 0.0),
         "impedance_rmse": metrics.impedance_rmse(t, response["hand"], torque, desired),
         "desired_impedance": desired,
-        "withdrawal_times": list(out),
+        "withdrawal_times": list(metrics.withdrawal_times(t, response["hand"], torque)),
         "effort": asdict(metrics.effort(t, torque, velocity)),
-        "rms_torque_in_contact": rms_where(response.t, torque, touched),
+        "rms_torque_in_contact": _rms_in_contact(t, torque),
         "force_control": _force_control(spec, scenario, run),
         "switches": len(run.switches),
         "shortest_stay": run.shortest_stay,
@@ -46,13 +45,10 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
     }
 
 
-def rms_where(t: np.ndarray[Any, Any], y: np.ndarray[Any, Any], where: Any) -> float:
-    """Return the root mean square over the time in which something holds; 0 if it never does."""
-    held = metrics.time_above(t, where.astype(float), 0.5)
-    length = float(t[-1] - t[0])
-    if not held:
-        return 0.0
-    return float(metrics.rms(t, np.where(where, y, 0.0)) * np.sqrt(length / held))
+def _rms_in_contact(t: Array, torque: Array) -> float:
+    """Return the root mean square over the time in contact, in N m; 0 without any."""
+    held = metrics.time_above(t, (torque != 0).astype(float), 0.5)
+    return float(metrics.rms(t, torque) * np.sqrt((t[-1] - t[0]) / held)) if held else 0.0
 
 
 def _force_control(

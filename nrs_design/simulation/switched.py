@@ -42,7 +42,7 @@ def transition_matrices(system: SwitchedSystem, step: float) -> Array:
 
 
 def mode_rates(system: SwitchedSystem, Q: Array) -> Array:
-    """Return how fast ``sqrt(x' Q x)`` decays at least in every mode by itself, shape (m,).
+    """Return the least decay of ``sqrt(x' Q x)`` in every mode alone, shape (m,).
 
     Continuous time: the largest alpha with ``A'Q + QA + 2 alpha Q <= 0``, in 1/s; negative where
     the norm can grow. Discrete time: the smallest rho with ``A'QA <= rho^2 Q``. For figures only.
@@ -90,12 +90,14 @@ def mode_eigenvalues(system: SwitchedSystem) -> list[NDArray[np.complex128]]:
     return [np.asarray(np.linalg.eigvals(A), np.complex128) for A in mode_matrices(system)]
 
 
+def all_modes(system: SwitchedSystem) -> SwitchedSystem:
+    """Return a system of all modes, in contact and in free motion."""
+    if system.contact is None:
+        return system
+    return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
+
+
 def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
     kept = system.modes[mode]
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
-
-
-def sampling_instants(step: float, steps: int) -> Array:
-    """Return sampling instants from zero; shape (steps + 1,)."""
-    return np.asarray(step * np.arange(steps + 1), dtype=float)

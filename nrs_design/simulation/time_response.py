@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -45,20 +46,12 @@ class TimeResponse:
     y: Array  # Shape (p, N). Outputs.
     x: Array  # Shape (n, N). States.
     u: Array  # Shape (m, N). Inputs.
-    # outputs, states, inputs: what the rows are.
+    # outputs, states, inputs: names and units of the rows.
     outputs: tuple[Signal, ...]
     states: tuple[Signal, ...]
     inputs: tuple[Signal, ...]
     mode: NDArray[np.int64]  # Shape (N,). Index of the controller in force from each instant on.
     modes: tuple[str, ...]  # The controllers
-
-    def __post_init__(self) -> None:
-        """Refuse shapes that do not fit together."""
-        for rows, signals in ((self.y, self.outputs), (self.x, self.states), (self.u, self.inputs)):
-            if rows.shape != (len(signals), len(self.t)):
-                raise ValueError(f"{len(signals)} signals over {len(self.t)} instants expected")
-        if self.mode.shape != self.t.shape:
-            raise ValueError("every instant has one mode")
 
     def __len__(self) -> int:
         """Return the number of instants."""
@@ -92,9 +85,9 @@ class TimeResponse:
         # A table has one row for each instant: the last one of a jump.
         kept = np.append(np.diff(self.t) > 0, True)
         rows = [("time_s", self.t), *((signal.column, row) for signal, row in self._rows())]
+        modes = [self.modes[k] for k in self.mode[kept].tolist()]
         text = io.StringIO()
-        text.write(",".join([*(name for name, _ in rows), "mode"]) + "\n")
-        numbers = zip(*(map(repr, row[kept].tolist()) for _, row in rows), strict=True)
-        for line, mode in zip(numbers, self.mode[kept].tolist(), strict=True):
-            text.write(",".join(line) + f",{self.modes[mode]}\n")
+        table = csv.writer(text, lineterminator="\n")
+        table.writerow([*(name for name, _ in rows), "mode"])
+        table.writerows(zip(*(row[kept].tolist() for _, row in rows), modes, strict=True))
         return text.getvalue()

@@ -27,7 +27,7 @@ from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices, deflected
 from nrs_design.simulation.rules import Rules, fitting_step
-from nrs_design.simulation.switched import expm, fine_step, mode_eigenvalues
+from nrs_design.simulation.switched import all_modes, expm, fine_step, mode_eigenvalues
 
 # Steps that are chosen anew, of so many of the runs that come farthest while a choice is held, for
 # so many steps; most sweeps.
@@ -35,7 +35,7 @@ _CHOSEN, _KEPT, _HELD, _SWEEPS = 600, 8, 3000, 15
 # Fractions of a run after which the new choices continue it.
 _CUTS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
 _NO_GAIN = 1e-5
-# A motion has faded to a thousandth after so many time constants.
+# Time constants until a motion has faded to a thousandth.
 _FADED = 8.0
 # A mode settles if no motion of it keeps more than this share of itself in a step.
 _SETTLES = 1 - 1e-9
@@ -44,9 +44,9 @@ DEFLECTION = "deflection"
 
 @dataclass(frozen=True, eq=False)
 class WorstRun:
-    """The worst run that was found for one quantity."""
+    """The worst run found for one quantity."""
 
-    output: Output  # What was made large
+    output: Output  # The quantity
     value: float  # Its size at the end of the run
     time: Array  # Shape (K + 1,). In s.
     # Shape (K + 1, n). From rest, or settled under disturbances that were held for long.
@@ -74,7 +74,8 @@ def worst_runs(
     if not any(any(map(any, column.numerators)) for c in system.channels for column in c.columns):
         raise ValueError("what disturbs the loop acts on none of its modes")
     games = _games(system)
-    return tuple(_worst(games, output, touched) for output in outputs)
+    each = ([game.worst(output, touched) for game in games] for output in outputs)
+    return tuple(max(found, key=lambda run: run.value) for found in each)
 
 
 def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
@@ -83,7 +84,7 @@ def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
     A bound holds however modes follow each other, and so he need keep no rules of switching.
     """
     free = replace(system, switching=ARBITRARY, clock=None, channels=tuple(bound.channels))
-    return _worst(_games(free), bound.output)
+    return max((game.worst(bound.output) for game in _games(free)), key=lambda run: run.value)
 
 
 def output_values(system: SwitchedSystem, output: Output, states: Array) -> Array:
@@ -101,10 +102,6 @@ def output_values(system: SwitchedSystem, output: Output, states: Array) -> Arra
 def pushes_only(system: SwitchedSystem, output: Output) -> bool:
     """Tell whether an output is of tissue that can be lost: it pushes and never pulls."""
     return system.contact is not None and output.name in ("force", DEFLECTION)
-
-
-def _worst(games: Sequence[_Game], output: Output, touched: Sequence[Environment] = ()) -> WorstRun:
-    return max((game.worst(output, touched) for game in games), key=lambda run: run.value)
 
 
 def _games(system: SwitchedSystem) -> list[_Game]:
@@ -163,8 +160,7 @@ class _Game:
     def of(cls, system: SwitchedSystem, step: float) -> _Game:
         """Lay a system of modes of one size on a grid of time, in floating point."""
         step = fitting_step(system, step)
-        free = () if system.contact is None else system.contact.free
-        parts = [np.array([mode.A.floats() for mode in (*system.modes, *free)])]
+        parts = [np.array([mode.A.floats() for mode in all_modes(system).modes])]
         for channel in system.channels:
             columns = np.array([column.floats() for column in channel.columns])
             parts.append(columns * float(channel.bound))
@@ -174,56 +170,49 @@ class _Game:
             square[:, : system.order] = maps * step
             maps = expm(square)[:, : system.order]
         touching, flying = maps[: len(system.modes)], maps[len(system.modes) :]
-        flights = flying[_free_counterparts(system)] if free else flying
+        flights = flying[_free_counterparts(system)] if len(flying) else flying
         return cls(system, step, Rules.of(system, step), touching, flights)
 
     @property
     def losable(self) -> bool:
         """Whether contact may be lost."""
-        return bool(len(self.flights))
+        return self.system.contact is not None
 
     @cached_property
-    def pulls(self) -> Array:
-        """Forces of tissue that could pull, shape (q, n); without a positive one contact is lost.
-
-        There is none where contact is kept.
-        """
-        pulls = () if self.system.contact is None else self.system.contact.pulls
-        return np.array([row.floats()[0] for row in pulls]).reshape(-1, self.system.order)
+    def _pulls(self) -> Array | None:
+        """Forces of tissue that could pull, shape (q, n); contact is kept by a positive one."""
+        contact = self.system.contact
+        rows = () if contact is None else contact.pulls
+        return np.array([row.floats()[0] for row in rows]) if rows else None
 
     def flies(self, states: Array) -> NDArray[np.bool_]:
         """Tell at which states, shape (..., n), nothing is touched; shape (...)."""
         if not self.losable:
             return np.zeros(states.shape[:-1], dtype=np.bool_)
         lost = states[..., -1] <= 0
-        if len(self.pulls):
-            lost |= (states @ self.pulls.T <= 0).all(axis=-1)
+        if self._pulls is not None:
+            lost |= (states @ self._pulls.T <= 0).all(axis=-1)
         return np.asarray(lost)
 
-    def maps_at(self, states: Array, modes: Indices) -> Array:
-        """Return the steps from states, shape (S, n), in modes, shape (S,)."""
-        flies = self.flies(states)
-        if not flies.any():
-            return self.maps[modes]
-        return np.where(flies[:, None, None], self.flights[modes], self.maps[modes])
-
-    def play(self, run: _Run) -> Array:
+    def _play(self, run: _Run) -> Array:
         """Simulate runs; shape (K + 1, S, n), at a switch before the reset."""
         states, rules = [run.state], self.rules
         for action, share in zip(run.actions, run.shares, strict=True):
             x = (rules.jumps[rules.jump[action]] @ states[-1][:, :, None])[:, :, 0]
-            full = np.concatenate([x, share], axis=1)[:, :, None]
-            states.append((self.maps_at(x, rules.mode[action]) @ full)[:, :, 0])
+            full, flies = np.concatenate([x, share], axis=1)[:, :, None], self.flies(x)
+            maps = self.maps[rules.mode[action]]
+            maps[flies] = self.flights[rules.mode[action[flies]]]
+            states.append((maps @ full)[:, :, 0])
         return np.array(states)
 
     @cached_property
     def held(self) -> tuple[_Run, Array]:
-        """The largest disturbances, held in either direction in one mode after the other.
+        """The largest disturbances, held in either direction, in one mode for each run.
 
         Every mode of the game may follow every mode. They come after as many steps at rest as are
         chosen anew; where modes may follow each other freely, some begin where they settle.
         """
-        rules, steps = self.rules, self._chosen + int(np.clip(self._length, 0, _HELD))
+        rules, steps = self.rules, self._chosen + int(min(_length(self.system) / self.step, _HELD))
         begins = [
             (mode, sign, state)
             for mode in range(len(self.maps))
@@ -242,15 +231,11 @@ class _Game:
         shares = shares * np.array([sign for _, sign, _ in begins])[:, None]
         shares[: self._chosen, ~state.any(axis=1)] = 0.0
         run = _Run(np.array(actions), shares, state, np.zeros_like(wanted))
-        return run, self.play(run)
+        return run, self._play(run)
 
     @cached_property
-    def _length(self) -> float:
-        return _length(self.system) / self.step
-
-    @property
     def _chosen(self) -> int:
-        return int(np.clip(self._length, 100, _CHOSEN))
+        return int(np.clip(_length(self.system) / self.step, 100, _CHOSEN))
 
     def _settled(self, mode: int, sign: float) -> Iterator[Array]:
         """Yield the states that a mode settles at, in contact and on the way to the surface."""
@@ -296,41 +281,39 @@ class _Game:
     def _shown(self, output: Output, value: float, run: _Run) -> WorstRun:
         system = self.system
         if _is_free(system) and not run.state.any():
-            # It rests before anything acts.
+            # The run begins with the first disturbance.
             begun = int(run.shares.any(axis=(1, 2)).argmax())
             run = replace(run, actions=run.actions[begun:], shares=run.shares[begun:])
-        states = self.play(run)[:, 0]
+        states = self._play(run)[:, 0]
         mode = self.rules.mode[run.actions[:, 0]]
-        if system.contact is not None:
-            free = len(system.modes) + _free_counterparts(system)
-            mode = np.where(self.flies(states[:-1]), free[mode], mode)
+        flies = self.flies(states[:-1])
+        if flies.any():
+            mode = np.where(flies, len(system.modes) + _free_counterparts(system)[mode], mode)
         bounds = np.array([float(channel.bound) for channel in system.channels])
         unit = self.step if system.sample_time is None else float(system.sample_time)
         time = np.asarray(unit * np.arange(len(states)), dtype=float)
         return WorstRun(output, value, time, states, mode, run.shares[:, 0] * bounds)
 
     def _sizes(self, aim: _Aim, states: Array, modes: Indices) -> Array:
-        """Return what is wanted at states, shape (..., n), in modes, shape (...)."""
+        """Return the size of the aim at states, shape (..., n), in modes, shape (...)."""
         size = aim.sizes(states, modes).max(axis=-1)
         return np.where(self.flies(states), 0.0, size) if aim.one_sided else np.asarray(size)
 
     def _improved(self, aim: _Aim, run: _Run) -> tuple[Array, _Run]:
         """Improve runs until a sweep gains nothing, or there have been enough."""
-        states, runs = self.play(run), np.arange(len(run.node))
+        states, runs = self._play(run), np.arange(len(run.node))
         values = self._sizes(aim, states[-1], self.rules.mode[run.actions[-1]])
         for _ in range(_SWEEPS):
             fresh = self._answers(aim, run, states)
-            reached = self.play(fresh)
+            reached = self._play(fresh)
             sizes = self._sizes(aim, reached[-1], self.rules.mode[fresh.actions[-1]])
             picked = sizes.reshape(-1, len(runs)).argmax(axis=0) * len(runs) + runs
             gained = sizes[picked] > values * (1 + _NO_GAIN)
             if not gained.any():
                 break
             better = picked[gained]
-            run.actions[:, gained], run.shares[:, gained] = (
-                fresh.actions[:, better],
-                fresh.shares[:, better],
-            )
+            run.actions[:, gained] = fresh.actions[:, better]
+            run.shares[:, gained] = fresh.shares[:, better]
             states[:, gained], values[gained] = reached[:, better], sizes[better]
         return values, run
 
@@ -403,13 +386,9 @@ def _free_counterparts(system: SwitchedSystem) -> Indices:
     It has the same controller, gains, motor and delay: the name with most parts in common.
     """
     assert system.contact is not None
-    free = [mode.name.split("/") for mode in system.contact.free]
-    found = []
-    for mode in system.modes:
-        parts = mode.name.split("/")
-        common = [(names[0] == parts[0], len(set(names) & set(parts))) for names in free]
-        found.append(max(range(len(free)), key=lambda i: common[i]))
-    return np.array(found, dtype=np.int64)
+    touching, free = ([m.name.split("/") for m in ms] for ms in (system.modes, system.contact.free))
+    common = [[(b[0] == a[0], len({*a} & {*b})) for b in free] for a in touching]
+    return np.array([own.index(max(own)) for own in common], dtype=np.int64)
 
 
 def _settles(A: Array) -> bool:

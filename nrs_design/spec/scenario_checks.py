@@ -21,8 +21,6 @@ def _names(spec: Spec) -> Iterator[tuple[Location, Reference]]:
         yield ("mode_logic",), Reference("controller", name, spec.controllers)
     for at, _, surface in _surfaces(spec):
         yield (*at, "environment"), Reference("environment", surface.environment, spec.environments)
-        for j, name in enumerate(surface.beside):
-            yield (*at, "beside", j), Reference("environment", name, spec.environments)
     for at, run in _runs(spec):
         if run.control is None:
             continue
@@ -41,15 +39,6 @@ def _surfaces(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec, SurfaceSpec]
     for at, run in _runs(spec):
         for i, surface in enumerate(run.surfaces):
             yield (*at, "surfaces", i), run, surface
-
-
-def _preloaded(spec: Spec) -> Iterator[tuple[Location, str]]:
-    """Yield an environment of one body with others that is not linear."""
-    for at, _, surface in _surfaces(spec):
-        names = (surface.environment, *surface.beside) if surface.beside else ()
-        laws = ((name, spec.environments.get(name)) for name in names)
-        if found := next((name for name, law in laws if law is not None and law.preloaded), None):
-            yield at, found
 
 
 def _inside(spec: Spec) -> Iterator[tuple[Location, tuple[str, float]]]:
@@ -89,11 +78,6 @@ def _without_logic(spec: Spec) -> Iterator[tuple[Location, bool]]:
 
 SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
     *each(_names, NO_SUCH),
-    refuse(
-        _preloaded,
-        "{0} is not linear, and environments of one body are",
-        "leave beside out, or name linear environments",
-    ),
     refuse(
         _inside,
         "the axis rests inside {0!r} at the start",

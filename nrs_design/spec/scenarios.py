@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field
@@ -61,15 +60,6 @@ def _read_schedule(value: object) -> tuple[tuple[Quantity, str], ...]:
     return _read_timed(value, 1, form, lambda item, i: as_text(item, i, 1))
 
 
-def _read_file(value: object) -> str:
-    """Read the name of a file below the folder of the spec."""
-    text = as_text(value)
-    path = PurePosixPath(text)
-    if not text.strip() or path.is_absolute() or ".." in path.parts or "\\" in text:
-        raise fault(f"{quoted(text)} is not a file below the spec's folder", "as in data/hand.csv")
-    return text
-
-
 def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> dict[str, Any]:
     pairs = pair_schema([first, second])
     return {"type": "array", "items": pairs, "minItems": least, "maxItems": MAX_POINTS}
@@ -83,7 +73,6 @@ Schedule = Annotated[
     tuple[tuple[Quantity, str], ...],
     ParsedBy(_read_schedule, _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1)),
 ]
-File = Annotated[str, ParsedBy(_read_file, {"type": "string"})]
 Seed = Annotated[int, whole(0, LARGEST_SEED)]
 
 
@@ -101,7 +90,7 @@ class SinusoidSpec(SpecModel, stronger="unknown", unsaid="other"):
 
 
 class CommandProfileSpec(SpecModel, stronger="unknown", unsaid="other"):
-    """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
+    """The velocity that the surgeon commands, in one of three ways; positive raises the angle."""
 
     constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
     points: Breakpoints | None = optional(
@@ -109,24 +98,14 @@ class CommandProfileSpec(SpecModel, stronger="unknown", unsaid="other"):
         "6.7); the last velocity is kept. A time that is there twice is a jump"
     )
     sinusoid: SinusoidSpec | None = optional("{amplitude: ..., frequency: ..., offset: ...}")
-    csv: File | None = optional(
-        "file below the folder of the spec, with columns time_s and velocity_deg_s or "
-        "velocity_rad_s; straight lines between its rows"
-    )
 
-    checks = one_of("a command is given in one way", "write constant, points, sinusoid or csv")
+    checks = one_of("a command is given in one way", "write constant, points or sinusoid")
 
 
 class SurfaceSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Where an environment begins; it pushes and never pulls."""
 
     environment: Label = required("name of the environment")
-    beside: Annotated[tuple[Label, ...], Field(max_length=MAX_SURFACES)] = optional(
-        "linear environments that are one body with it, of the same parameters: "
-        "forces add up, and only their sum does not pull. An elastic one with maxwell ones beside "
-        "it is a Prony series",
-        (),
-    )
     at: field.SignedAngle = required("angle of its surface in rad")
     side: Literal["above", "below"] = optional(
         "above: met by rising angles; below: by falling ones", "above"
@@ -235,7 +214,7 @@ class ScenarioSpec(SpecModel, stronger="unknown", unsaid="other"):
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: field.Duration | None = optional(
-        "length of the run in s, at most an hour; default: that of points or csv", stronger="larger"
+        "length of the run in s, at most an hour; default: that of points", stronger="larger"
     )
     start: field.SignedAngle | None = optional(
         "angle at which the axis rests at first, in rad; default: 0"
@@ -269,7 +248,7 @@ class ScenarioSpec(SpecModel, stronger="unknown", unsaid="other"):
     checks = (
         Row(
             "",
-            lambda s: s.length is None and s.command.csv is None,
+            lambda s: s.length is None,
             "nothing says how long the run is",
             "add `duration: 10 s`",
         ),

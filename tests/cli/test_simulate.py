@@ -104,25 +104,6 @@ def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
     assert document["runs"][0]["limits"]["torque"] == 0.25
 
 
-def test_a_profile_behind_a_link(spec, tmp_path):
-    """Within the folder it is as good as the file; out of it, another machine has another one."""
-    path = spec("command: {csv: hand.csv}")
-    outside = tmp_path.parent / f"{tmp_path.name}-outside.csv"
-    for target in (tmp_path / "real.csv", outside):
-        target.write_text("time_s,velocity_deg_s\n0,0\n0.1,0\n")
-    link = tmp_path / "hand.csv"
-    link.symlink_to("real.csv")
-    run("simulate", path, "--quiet", cwd=tmp_path, code=0)
-    for target, message in (
-        (outside, "leads out of the spec's folder"),
-        ("hand.csv", "symbolic links"),
-        ("/dev/zero", "leads out of the spec's folder"),
-    ):
-        link.unlink()
-        link.symlink_to(target)
-        assert message in run("simulate", path, cwd=tmp_path, code=2).stderr
-
-
 def test_a_bound_far_away_is_named_not_drawn():
     response = simulated(text_of(scenario=RUN)).response
     near = draw_simulated(response, 0.3, 0.14, 0.24, (0.6, True))

@@ -1,7 +1,5 @@
 """Interactions to be simulated, small and quick to design."""
 
-from pathlib import Path
-
 from nrs_design.design.analysis import design_controllers
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
@@ -53,7 +51,7 @@ def simulated(text, engine="exact", sampling=None, **options):
     plant = build_plant(spec)
     design = design_controllers(spec, plant)
     scenario = (
-        build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
+        build_scenario(spec, plant, "run", spec.scenarios["run"])
         if spec.scenarios
         else default_scenario(spec, plant)
     )

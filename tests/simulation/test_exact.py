@@ -1,7 +1,6 @@
 """The exact engine against closed forms, and against an integrator that knows nothing of it."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -155,24 +154,6 @@ def test_position_and_force_control_end_where_the_balance_is():
     assert run.response["torque"][-1] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_what_runs_without_an_offset_is_what_is_proved():
-    """The motion under force control is that of the assembled mode, and X an input of it alone."""
-    spec = parse_spec(text_of(PLACED, scenario=FREE))
-    plant = build_plant(spec)
-    design = design_controllers(spec, plant)
-    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
-    touching = replace(scenario, surfaces=default_scenario(spec, plant).surfaces)
-    loop = Loop(spec, plant, design, touching)
-    proved = {mode.name: mode.A for mode in assemble(spec, plant, design).modes}
-    for name, label in (("position", "position"), ("force", "force/soft")):
-        own = np.array(proved[label].floats())
-        A = loop.mode(name, (0,) if name == "force" else ()).A
-        assert np.poly(A[:2, :2]) == pytest.approx(np.poly(own), rel=1e-9)
-    place = [signal.name for signal in loop.states].index("commanded position")
-    assert A[0, place] or A[1, place]
-    assert not A[place].any()
-
-
 DAMPED = "{model: kelvin-voigt, stiffness: 43 N*m/rad, damping: 0.3 N*m*s/rad}"
 CREEPING = (
     "{model: kelvin-boltzmann, parallel_stiffness: 60 N*m/rad, series_stiffness: 80 N*m/rad, "
@@ -305,7 +286,7 @@ def test_a_budget_of_steps_is_one_of_events():
 def test_a_logic_that_asks_for_two_at_one_instant_is_stopped():
     spec = parse_spec(text_of(scenario=FREE))
     plant = build_plant(spec)
-    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
+    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"])
     out = (Condition("command", low=0.01),)
     both = (Switch("insertion", "withdrawal", out), Switch("withdrawal", "insertion", out))
     scenario = replace(scenario, control=Control("insertion", both))

@@ -10,9 +10,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.reporting.evidence.functions import step_norms
 from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms, slowest
+from nrs_design.simulation.greedy import greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import quadratic_norm
-from nrs_design.simulation.switched import transition_matrices
+from nrs_design.simulation.switched import all_modes, transition_matrices
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, genuine
 from tests.simulation.systems import reset
 from tests.simulation.systems import system as modes

@@ -9,7 +9,7 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.simulation.build_scenario import default_scenario
-from nrs_design.simulation.sampled_axis import SampleInputs
+from nrs_design.simulation.sampled_axis import draw_samples
 from nrs_design.spec import read_spec
 from nrs_design.spec.misses import DeadlinesSpec
 from tests.support import SOFT_TISSUE
@@ -33,13 +33,10 @@ def test_what_is_drawn_keeps_the_rule(tmp_path, rule, most, of):
     misses = DeadlinesSpec.model_validate({**rule, "command": "hold"})
     sampling = given.spec.sampling
     missing = sampling.model_copy(update={"misses": misses})
-    drawn = SampleInputs.of(scenario, missing, (0.0, 0.0), 4000)
-    windows = np.lib.stride_tricks.sliding_window_view(drawn.missed, of).sum(axis=1)
-    assert windows.max() == most
-    plain = SampleInputs.of(scenario, sampling, (0.0, 0.0), 4000)
-    assert not plain.missed.any()
-    assert (plain.ages == drawn.ages).all()
-    assert (plain.noise == drawn.noise).all()
+    drawn, plain = (draw_samples(scenario, s, (0.0, 0.0), 4000) for s in (missing, sampling))
+    missed = np.array([sample.missed for sample in drawn])
+    assert np.lib.stride_tricks.sliding_window_view(missed, of).sum(axis=1).max() == most
+    assert [sample._replace(missed=False) for sample in drawn] == plain
 
 
 @pytest.mark.parametrize("command", ["hold", "zero"])

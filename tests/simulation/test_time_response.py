@@ -48,16 +48,3 @@ def test_csv_is_read_back_to_the_bit(tmp_path):
     assert log.time.tolist() == one.t.tolist()
     assert log.columns["torque"].tolist() == one["torque"].tolist()
     assert log.labels == ("insertion", "withdrawal")
-
-
-def test_shapes_must_fit():
-    with pytest.raises(ValueError, match="2 signals over 3 instants"):
-        TimeResponse(
-            np.zeros(3), np.zeros((1, 3)), np.zeros((0, 3)), np.zeros((0, 3)),
-            (Signal("a", ""), Signal("b", "")), (), (), np.zeros(3, np.int64), ("one",),
-        )  # fmt: skip
-    with pytest.raises(ValueError, match="one mode"):
-        TimeResponse(
-            np.zeros(3), np.zeros((1, 3)), np.zeros((0, 3)), np.zeros((0, 3)),
-            (Signal("a", ""),), (), (), np.zeros(2, np.int64), ("one",),
-        )  # fmt: skip

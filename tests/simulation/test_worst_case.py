@@ -211,7 +211,7 @@ def test_the_exact_engine_comes_to_the_same():
     times = np.repeat(np.arange(len(run.mode) + 1) * width, 2)[1:-1]
     profile = Profile.through(times, np.repeat(run.disturbances[:, 0], 2))
     law = designed.plant.environment("soft").nominal
-    surface = Surface("soft", law, law.element, 0.0, 1)
+    surface = Surface("soft", law.element, 0.0, 1)
     scenario = Scenario("worst", profile, float(run.time[-1]), (surface,), Control("insertion"))
     again = simulate_exactly(designed.spec, designed.plant, designed.design, scenario)
     assert np.abs(again.response["torque"]).max() == pytest.approx(run.value, rel=0.01)

@@ -5,7 +5,6 @@ The law of a controller of a spec is the `LAW` of the file that its type names.
 
 from collections.abc import Mapping
 from importlib import import_module
-from types import MappingProxyType
 
 from nrs_design.controllers.laws.force import ProportionalForce
 from nrs_design.controllers.laws.impedance import Admittance
@@ -27,9 +26,9 @@ def _law_of(controller: str) -> type[CompliantLaw]:
 
 
 # Laws that the robot switches between, by the type of a controller in a spec.
-LAWS: Mapping[str, type[CompliantLaw]] = MappingProxyType(
-    {controller: _law_of(controller) for controller in CONTROLLER_TYPES}
-)
+LAWS: Mapping[str, type[CompliantLaw]] = {
+    controller: _law_of(controller) for controller in CONTROLLER_TYPES
+}
 
 __all__ = [
     "LAWS",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
@@ -18,17 +17,15 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     """Position correction ``Kp (Fd - F)`` of the force mode (thesis 6.32)."""
 
     name: ClassVar[str] = "force"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "contact-kept.force": (
-                "Contact is not lost while force is controlled: the environment "
-                "would pull as it pushes."
-            ),
-        }
-    )
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
+    sentences: ClassVar[Mapping[str, str]] = {
+        "contact-kept.force": (
+            "Contact is not lost while force is controlled: the environment "
+            "would pull as it pushes."
+        ),
+    }
+    units: ClassVar[Mapping[str, str]] = {"Kp": "rad/(N*m)"}
     commands: ClassVar[Command] = ForceControllerSpec.commands
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "proportional_gain"})
+    fixed: ClassVar[Mapping[str, str]] = {"Kp": "proportional_gain"}
     holds_hand: ClassVar[bool] = True
     contact_kept: ClassVar[str | None] = "force"
 
@@ -43,7 +40,7 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         return DiscreteLaw(type(self), {"Kf": self.Kp} if self.Kp else {})
 
     def find_fault(self, given: ForceControllerSpec) -> str | None:
-        """Say if the gain is negative, or another one than the spec fixes."""
+        """Return the fault of a negative gain, or of a gain unlike the spec."""
         negative = "gain Kp is negative" if self.Kp < 0 else None
         return AbstractCompliantLaw.find_fault(self, given) or negative
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -28,17 +27,13 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     """
 
     name: ClassVar[str] = "impedance"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "contact-kept.impedance": (
-                "Contact is not lost while an impedance controller is active: "
-                "free motion under one is not one of the modes."
-            ),
-        }
-    )
-    units: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "contact-kept.impedance": (
+            "Contact is not lost while an impedance controller is active: "
+            "free motion under one is not one of the modes."
+        ),
+    }
+    units: ClassVar[Mapping[str, str]] = {"Mt": "kg*m^2", "Bt": "N*m*s/rad", "Kt": "N*m/rad"}
     commands: ClassVar[Command] = ImpedanceControllerSpec.commands
     contact_kept: ClassVar[str | None] = "impedance"
 
@@ -49,7 +44,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
 
     @classmethod
     def gains_in(cls, given: ImpedanceControllerSpec) -> tuple[str, ...]:
-        """Return the names of its gains; Kt is one where the spec gives it."""
+        """Return the names of the gains; Kt needs a value in the spec."""
         return ("Mt", "Bt") if given.Kt is None else ("Mt", "Bt", "Kt")
 
     @property
@@ -162,7 +157,7 @@ def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
     if sprung:
         yield StepGain("Kt", "Kt", "N*m/rad")
     if inert:
-        # Of both states of an idle admittance, the same is left.
+        # Both states of an idle admittance keep the same share.
         yield StepGain("a", "a", "1", idle="d")
     yield StepGain("b", "b", "rad/(s*N*m)")
     yield StepGain("T", "T", "s", common=True)

@@ -1,4 +1,4 @@
-"""What all control laws have in common.
+"""The interface of control laws.
 
 All gains are exact rationals that are single-precision numbers, so that a proof, a simulation
 and an export speak about the same values. A law is a list of operations with numbers
@@ -12,7 +12,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
-from types import MappingProxyType
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -22,7 +21,7 @@ from nrs_design.spec.controllers import AbstractControllerSpec, Command
 from nrs_design.spec.quantity import exact_number
 
 S = TypeVar("S", bound=AbstractControllerSpec)
-# What a law gives the motion loop, and the rates of its states.
+# Command of a law to the motion loop, and rates of the states.
 Response = tuple[LinearForm, list[LinearForm]]
 
 
@@ -33,7 +32,7 @@ class AbstractLaw(ABC):
     A field with a default is a gain only where it has another value.
     """
 
-    # As certificates and exports call it, and the unit of every gain.
+    # Name in certificates and exports, and unit of every gain.
     name: ClassVar[str]
     units: ClassVar[Mapping[str, str]]
 
@@ -57,17 +56,17 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     Its `name` is the `type` of its controllers in a spec.
     """
 
-    # Whether the motion loop gets a velocity or a position from it.
+    # Kind of command for the motion loop: velocity or position.
     commands: ClassVar[Command]
-    # Whether the velocity command of the hand waits while the law is active (thesis 6.3.3).
+    # An active law may let the velocity command of the hand wait (thesis 6.3.3).
     holds_hand: ClassVar[bool] = False
     # Gains that a spec may fix, and the fields of the controller that do.
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    fixed: ClassVar[Mapping[str, str]] = {}
     # Id of an assumption on its own computation by a processor.
     sampled: ClassVar[str | None] = None
-    # What is said of no other law, by the id of its assumption.
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    # Whether its state decays in the position command of other controllers.
+    # Sentences about this law alone, by the ids of assumptions.
+    sentences: ClassVar[Mapping[str, str]] = {}
+    # The state may decay in the position command of other controllers.
     bleeds: ClassVar[bool] = False
     # Assumption on contact while the law is active, beside laws with another kind of command: by
     # default contact is never lost. None for no assumption.
@@ -80,7 +79,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
 
     @property
     def spring(self) -> Fraction:
-        """Stiffness in N m/rad that draws the robot back to its position reference; 0 is none.
+        """Stiffness in N m/rad towards the position reference; zero for none.
 
         Times the offset that the law has given the reference, it adds to the force in `respond`.
         """

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -17,7 +16,7 @@ class ProportionalDerivative(AbstractLaw):
     """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta a command."""
 
     name: ClassVar[str] = "motion"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rpm/rad", "Kd": "rpm*s/rad"})
+    units: ClassVar[Mapping[str, str]] = {"Kp": "rpm/rad", "Kd": "rpm*s/rad"}
 
     Kp: Fraction  # In rpm/rad, or whatever the motor takes instead of rpm
     Kd: Fraction  # In rpm s/rad, likewise
@@ -29,7 +28,7 @@ class ProportionalDerivative(AbstractLaw):
 
     @property
     def absent(self) -> bool:
-        """Whether there is none: the robot closes its own motion loop, and takes velocities."""
+        """Whether the robot closes the motion loop, and takes velocities."""
         return self.Kp == self.Kd == 0
 
     @staticmethod
@@ -47,5 +46,5 @@ class ProportionalDerivative(AbstractLaw):
         return to_float32(self.Kd / period)
 
 
-# Of a robot that closes its own motion loop.
+# Gains of a robot with a motion loop inside.
 NO_MOTION = ProportionalDerivative(Fraction(0), Fraction(0))

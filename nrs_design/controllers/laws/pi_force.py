@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -51,27 +50,23 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
     """Position correction ``Kp (Fd - F) + w`` with ``w' = Ki (Fd - F)``."""
 
     name: ClassVar[str] = "pi-force"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
+    units: ClassVar[Mapping[str, str]] = {"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"}
     commands: ClassVar[Command] = IntegralControllerSpec.commands
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"Kp": "proportional_gain", "Ki": "integral_gain"}
-    )
+    fixed: ClassVar[Mapping[str, str]] = {"Kp": "proportional_gain", "Ki": "integral_gain"}
     holds_hand: ClassVar[bool] = True
     sampled: ClassVar[str | None] = "idle.sampled-pi-force"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "contact-kept.pi-force": (
-                "Contact is not lost under PI force control: without a force "
-                "the integral is driven by the wanted force alone, and the axis "
-                "moves on until it meets something."
-            ),
-            "idle.sampled-pi-force": (
-                "A pi-force controller adds the integral w of its force error "
-                "besides, and a sample adds Ki_T times the difference of the "
-                "wanted force and its sample to w."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "contact-kept.pi-force": (
+            "Contact is not lost under PI force control: without a force "
+            "the integral is driven by the wanted force alone, and the axis "
+            "moves on until it meets something."
+        ),
+        "idle.sampled-pi-force": (
+            "A pi-force controller adds the integral w of its force error "
+            "besides, and a sample adds Ki_T times the difference of the "
+            "wanted force and its sample to w."
+        ),
+    }
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
     contact_kept: ClassVar[str | None] = "pi-force"
 
@@ -99,7 +94,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         return PROPORTIONAL, INTEGRAL
 
     def find_fault(self, given: IntegralControllerSpec) -> str | None:
-        """Say if the gains are not positive, or others than the spec fixes."""
+        """Return the fault of gains that are not positive, or unlike the spec."""
         if self.Kp <= 0 or self.Ki <= 0:
             return "gains Kp and Ki are not positive"
         return AbstractCompliantLaw.find_fault(self, given)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
@@ -18,7 +17,7 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     """The position mode: the motion loop follows its command, whatever the force."""
 
     name: ClassVar[str] = "position"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    units: ClassVar[Mapping[str, str]] = {}
     commands: ClassVar[Command] = PositionControllerSpec.commands
     # Free motion is this very mode.
     contact_kept: ClassVar[str | None] = None

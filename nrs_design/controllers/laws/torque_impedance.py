@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
@@ -25,13 +24,9 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
     """
 
     name: ClassVar[str] = "torque-impedance"
-    units: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"K": "N*m/rad", "D": "N*m*s/rad", "R": "1"}
-    )
+    units: ClassVar[Mapping[str, str]] = {"K": "N*m/rad", "D": "N*m*s/rad", "R": "1"}
     commands: ClassVar[Command] = TorqueImpedanceSpec.commands
-    fixed: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {"K": "stiffness", "D": "damping", "R": "inertia_ratio"}
-    )
+    fixed: ClassVar[Mapping[str, str]] = {"K": "stiffness", "D": "damping", "R": "inertia_ratio"}
 
     K: Fraction  # In N m/rad
     D: Fraction  # In N m s/rad
@@ -39,7 +34,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
 
     @classmethod
     def gains_in(cls, given: TorqueImpedanceSpec) -> tuple[str, ...]:
-        """Return the names of its gains; R is one where the spec gives another than 1."""
+        """Return the names of the gains; R needs a value other than 1 in the spec."""
         return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
@@ -55,7 +50,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         if self.D:
             numbers["Kd_over_T"] = to_float32(self.D / (self.R * period))
         if self.R != 1:
-            # What is touched brakes with F, and is to brake with F/R.
+            # Contact brakes with F; the law makes F/R of it.
             numbers[FORCE_GAIN] = to_float32(1 / self.R - 1)
         return DiscreteLaw(type(self), numbers)
 

@@ -1,7 +1,6 @@
 """Laws of contact with tissue, tool or hand (thesis 2.5 and fig. 2.18), one file for each."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.hand import Hand
@@ -17,19 +16,17 @@ from nrs_design.models.contact.maxwell import Maxwell
 from nrs_design.models.contact.motion import Motion
 
 # Laws of tissue by name, the simplest first.
-LAWS: Mapping[str, type[AbstractContactLaw]] = MappingProxyType(
-    {law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)}
-)
+LAWS: Mapping[str, type[AbstractContactLaw]] = {
+    law.name: law for law in (Elastic, KelvinVoigt, Maxwell, KelvinBoltzmann, HuntCrossley)
+}
 
-# Those of them that can enter a design and a proof.
-TISSUE_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
-    {law.name: law for law in LAWS.values() if issubclass(law, AbstractLinearLaw)}
-)
+# Tissue laws for a design and a proof.
+TISSUE_LAWS: Mapping[str, type[AbstractLinearLaw]] = {
+    law.name: law for law in LAWS.values() if issubclass(law, AbstractLinearLaw)
+}
 
 # All that can, a hand too, which no record of a press is about.
-LINEAR_LAWS: Mapping[str, type[AbstractLinearLaw]] = MappingProxyType(
-    {**TISSUE_LAWS, Hand.name: Hand}
-)
+LINEAR_LAWS: Mapping[str, type[AbstractLinearLaw]] = {**TISSUE_LAWS, Hand.name: Hand}
 
 
 __all__ = [

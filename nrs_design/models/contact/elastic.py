@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from nrs_design.models.contact.law import STIFFNESS, AbstractMemorylessLaw, Element, Number
+from nrs_design.models.contact.law import STIFFNESS, AbstractMemorylessLaw, Number
 
 
 @dataclass(frozen=True)
@@ -19,8 +19,3 @@ class Elastic(AbstractMemorylessLaw):
     front: ClassVar[str] = "k"
 
     k: Number  # Stiffness in N/m (N m/rad)
-
-    @property
-    def element(self) -> Element:
-        """The spring."""
-        return Element(float(self.k))

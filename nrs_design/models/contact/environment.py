@@ -24,7 +24,7 @@ class Environment:
     ranges: tuple[Interval, ...]
     # Environments that are touched at once.
     parts: tuple[Environment, ...] = ()
-    each_losable: bool = False  # Whether each part may separate on its own
+    each_losable: bool = False  # Each part may separate alone
     # Nonlinear law, which the linear one replaces within a preload.
     nonlinear: type[AbstractNonlinearLaw] | None = None
 
@@ -35,7 +35,7 @@ class Environment:
 
     @property
     def depends(self) -> bool:
-        """Whether stiffness and damping depend on each other: not every corner is attained."""
+        """Whether stiffness and damping depend on each other, so that corners may be missed."""
         return self.preloaded or (self.each_losable and bool(self.law.beside))
 
     @property
@@ -93,14 +93,14 @@ class Environment:
             parts = tuple(part.scaled(scale) for part in self.parts)
             return touch_at_once(parts, losable=self.each_losable)
         ranges = tuple(interval.scaled(scale) for interval in self.ranges)
-        for index, interval in enumerate(ranges):
-            if self.law.admits(index, interval.low):
-                continue
-            raise AssemblyError(
-                f"with its ranges scaled by {float(scale):.6g}, environment {self.name} reaches a "
-                f"{self.law.kinds[index]} {self.law.forbidden(index)}",
-                remedy="scale the ranges by less",
-            )
+        each = zip(self.law.parameters(), self.law.kinds, ranges, strict=True)
+        for parameter, kind, interval in each:
+            if fault := self.law.find_fault(parameter, interval.low):
+                raise AssemblyError(
+                    f"with its ranges scaled by {float(scale):.6g}, environment {self.name} "
+                    f"reaches a {kind} {fault}",
+                    remedy="scale the ranges by less",
+                )
         return replace(self, ranges=ranges)
 
 
@@ -125,8 +125,6 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
 
 
 def _sum(intervals: Sequence[Interval]) -> Interval:
-    return Interval(
-        sum((i.nominal for i in intervals), Fraction(0)),
-        sum((i.low for i in intervals), Fraction(0)),
-        sum((i.high for i in intervals), Fraction(0)),
-    )
+    ends = ((i.nominal, i.low, i.high) for i in intervals)
+    nominal, low, high = (sum(each, Fraction(0)) for each in zip(*ends, strict=True))
+    return Interval(nominal, low, high)

@@ -13,8 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
-from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.errors import AssemblyError, DesignError
@@ -36,14 +34,12 @@ class Hand(AbstractMemorylessLaw):
     """A spring, a damper and a mass that moves with the contact."""
 
     name: ClassVar[str] = "hand"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "tissue.hand": (
-                "{environment} holds the robot, and its mass moves with the "
-                "contact: its force is k delta + b delta' + m delta''."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "tissue.hand": (
+            "{environment} holds the robot, and its mass moves with the "
+            "contact: its force is k delta + b delta' + m delta''."
+        ),
+    }
     formula: ClassVar[str] = "F = k δ + b δ' + m δ''"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING, MASS)
     takes_velocity: ClassVar[bool] = True
@@ -56,10 +52,6 @@ class Hand(AbstractMemorylessLaw):
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
     m: Number  # Mass in kg (kg m^2); may be zero
-
-    def at_stiffness(self, value: Fraction) -> Hand:
-        """Return it with the same damping and mass."""
-        return Hand(value, self.b, self.m)
 
     @property
     def is_spring(self) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import AbstractNonlinearLaw, Solve
@@ -22,23 +21,21 @@ class HuntCrossley(AbstractNonlinearLaw):
     """A spring and a damper that both stiffen with the deflection; no force without contact."""
 
     name: ClassVar[str] = "hunt-crossley"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "preload.hunt-crossley": (
-                "{environment} is a Hunt-Crossley law whose deflection stays "
-                "between {low} and {high}. About a rest anywhere from its "
-                "surface to {high}, at which the commands hold every mode "
-                "whatever its parameters, its force is then that at rest, plus "
-                "k times the deflection from there, plus b times the velocity, "
-                "exactly, with k and b moving in the ranges of the modes: "
-                "motions need not be small or slow. Nothing is said once the "
-                "deflection has left this preload, nor of the difference of two "
-                "motions of which neither is at rest. The law moves k and b "
-                "together, so what is refuted with any such k and b may hold "
-                "with it."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "preload.hunt-crossley": (
+            "{environment} is a Hunt-Crossley law whose deflection stays "
+            "between {low} and {high}. About a rest anywhere from its "
+            "surface to {high}, at which the commands hold every mode "
+            "whatever its parameters, its force is then that at rest, plus "
+            "k times the deflection from there, plus b times the velocity, "
+            "exactly, with k and b moving in the ranges of the modes: "
+            "motions need not be small or slow. Nothing is said once the "
+            "deflection has left this preload, nor of the difference of two "
+            "motions of which neither is at rest. The law moves k and b "
+            "together, so what is refuted with any such k and b may hold "
+            "with it."
+        ),
+    }
     formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
     takes_velocity: ClassVar[bool] = True

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -31,22 +30,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KelvinBoltzmann(AbstractLinearLaw):
-    """A spring k2 in a row with a spring k1 beside a damper b."""
+    """A spring k2, followed by a spring k1 beside a damper b."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "memory.damper": (
-                "The damper of {environment} keeps its deflection at a switch "
-                "and when the parameters change."
-            ),
-            "memory.creeps": (
-                "While another environment is touched, {environment} is free of "
-                "force and its damper creeps back to rest, b d' = -k1 d, with "
-                "parameters in their ranges."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "memory.damper": (
+            "The damper of {environment} keeps its deflection at a switch "
+            "and when the parameters change."
+        ),
+        "memory.creeps": (
+            "While another environment is touched, {environment} is free of "
+            "force and its damper creeps back to rest, b d' = -k1 d, with "
+            "parameters in their ranges."
+        ),
+    }
     formula: ClassVar[str] = "F + η3 F' = η1 δ + η2 δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("parallel_stiffness", "series_stiffness", "damping")
@@ -90,19 +87,15 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
         The law is a spring eta1 beside a Maxwell element with stiffness ``k2 - eta1``.
         """
-        from nrs_design.models.contact.relaxation import Relaxation
-
         eta1, _, eta3 = self.eta
-        return eta1 * motion.deflection + (float(self.k2) - eta1) * Relaxation(motion, eta3).y
+        return eta1 * motion.deflection + (float(self.k2) - eta1) * motion.relaxed(eta3).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k1, log k2 and log b, shape (n, 3)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import Relaxation
-
         eta1, _, eta3 = self.eta
-        relaxed = Relaxation(motion, eta3)
+        relaxed = motion.relaxed(eta3)
         y, slope = relaxed.y, relaxed.slope
         arm = float(self.k2) - eta1
         # By log eta1, log arm and log eta3, and then by the chain rule.
@@ -114,15 +107,13 @@ class KelvinBoltzmann(AbstractLinearLaw):
     @classmethod
     def guesses(cls, motion: Motion, solve: Solve) -> Iterator[KelvinBoltzmann]:
         """Yield the best law for each of some time constants."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
         for tau in motion.time_constants.tolist():
-            eta1, arm = solve(motion.deflection, Relaxation(motion, tau).y)
+            eta1, arm = solve(motion.deflection, motion.relaxed(tau).y)
             yield cls.from_eta(eta1, (eta1 + arm) * tau, tau)
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
-        """Yield what the damper does at a switch, and while it is left alone."""
+        """Yield assumptions on the damper at a switch, and without contact."""
         yield Assumption.create("memory.damper", environment=environment)
         if not alone:
             yield Assumption.create("memory.creeps", environment=environment)

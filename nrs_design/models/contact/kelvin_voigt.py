@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.models.contact.law import DAMPING, STIFFNESS, AbstractMemorylessLaw, Element, Number
+from nrs_design.models.contact.law import DAMPING, STIFFNESS, AbstractMemorylessLaw, Number
 
 
 @dataclass(frozen=True)
@@ -24,12 +23,3 @@ class KelvinVoigt(AbstractMemorylessLaw):
 
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
-
-    def at_stiffness(self, value: Fraction) -> KelvinVoigt:
-        """Return it with the same damping."""
-        return KelvinVoigt(value, self.b)
-
-    @property
-    def element(self) -> Element:
-        """The spring and the damper beside it."""
-        return Element(float(self.k), float(self.b))

@@ -1,4 +1,4 @@
-"""What all laws of contact have in common.
+"""The interface of contact laws.
 
 NumPy is imported where it is used: a certificate is verified without it.
 """
@@ -8,9 +8,8 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Self
 
 from nrs_design.errors import AssemblyError
@@ -51,6 +50,10 @@ class Element:
     h: float = 0.0
     b: float = math.inf
 
+    def push(self, deflection: float, velocity: float) -> float:
+        """Return ``k delta + c delta'`` in N (N m), of the deflection beyond d."""
+        return self.k * deflection + self.c * velocity
+
 
 @dataclass(frozen=True)
 class AbstractContactLaw(ABC):
@@ -61,12 +64,12 @@ class AbstractContactLaw(ABC):
     """
 
     name: ClassVar[str]
-    # What is said of no other law, by the id of its assumption.
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    # Sentences about this law alone, by the ids of assumptions.
+    sentences: ClassVar[Mapping[str, str]] = {}
     formula: ClassVar[str]
-    # What each parameter is, in order: a stiffness, a damping, or something of the law's own.
+    # Kinds of the parameters, in order: stiffness, damping, or another kind.
     kinds: ClassVar[tuple[str, ...]]
-    # Whether the reaction takes the velocity itself, which a record has by differences only.
+    # The reaction may need the velocity, which a record has by differences only.
     takes_velocity: ClassVar[bool] = False
 
     @abstractmethod
@@ -148,11 +151,11 @@ class AbstractLinearLaw(AbstractContactLaw):
     beside: ClassVar[str] = ""
     # The states of `react`; the first is the one that all environments of a spec share.
     states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
-    # Whether the force depends on more than the deflection and the velocity of the moment.
+    # The force may depend on earlier deflections.
     remembers: ClassVar[bool] = False
-    # Whether the environment returns to where it was: a constant deflection keeps a force.
+    # The environment has a place of rest: a constant deflection keeps a force.
     has_rest: ClassVar[bool] = True
-    # Whether a mass moves with the contact, so that the force takes the acceleration.
+    # A mass may move with the contact: then the force needs the acceleration.
     has_mass: ClassVar[bool] = False
 
     def simulate(self, motion: Motion) -> Array:
@@ -195,7 +198,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @property
     def lags(self) -> bool:
-        """Whether force or memory take the velocity of the moment, too."""
+        """Whether force or memory depend on the velocity."""
         velocity, *states = coordinates(1 + len(self.states))
         force, (_, *rates) = self.react_accelerated(velocity, zero(len(velocity)), states)
         return any(form[0] for form in (force, *rates))
@@ -266,15 +269,12 @@ class AbstractLinearLaw(AbstractContactLaw):
         return tuple(_UNITS[kind][rotational] for kind in cls.kinds)
 
     @classmethod
-    def admits(cls, index: int, value: Number) -> bool:
-        """Tell whether a parameter, by its place, may have a value."""
-        positive = value > 0 or (value == 0 and cls.forbidden(index) == "< 0")
-        return positive and math.isfinite(value)
-
-    @classmethod
-    def forbidden(cls, index: int) -> str:
-        """Return which values a parameter, by its place, may not have."""
-        return "< 0" if cls.parameters()[index] in cls.may_vanish else "<= 0"
+    def find_fault(cls, parameter: str, value: Number) -> str | None:
+        """Return the range of forbidden values, if it holds the value of a parameter."""
+        vanishes = parameter in cls.may_vanish
+        if math.isfinite(value) and (value > 0 or (vanishes and value == 0)):
+            return None
+        return "< 0" if vanishes else "<= 0"
 
     def given(self) -> dict[str, str | float]:
         """Return the law and its parameters by the keys of a spec."""
@@ -302,6 +302,15 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
         """``(m s^2 + b s + k) / s``, without the powers that are absent."""
         numerator = (0.0,) * (2 - len(self.values)) + self.values[::-1]
         return numerator, (0.0,) * (len(numerator) - 2) + (1.0, 0.0)
+
+    def at_stiffness(self, value: Fraction) -> Self:
+        """Return it with the same damping and mass."""
+        return replace(self, **{self.front: value})
+
+    @property
+    def element(self) -> Element:
+        """The spring, and the damper beside it."""
+        return Element(*self.values)
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
         """Return ``F = k delta + b v`` and ``delta' = v``."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -34,17 +33,15 @@ class Maxwell(AbstractLinearLaw):
     """A spring and a damper in a row."""
 
     name: ClassVar[str] = "maxwell"
-    sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
-        {
-            "memory.maxwell": (
-                "{environment} has no rest position: a lasting deflection "
-                "leaves no force. Its state is the stretch of its spring, which "
-                "stays at a switch and when the parameters change; that the "
-                "deflection itself returns to zero is not claimed, nor that it "
-                "stays bounded under a command or other input."
-            ),
-        }
-    )
+    sentences: ClassVar[Mapping[str, str]] = {
+        "memory.maxwell": (
+            "{environment} has no rest position: a lasting deflection "
+            "leaves no force. Its state is the stretch of its spring, which "
+            "stays at a switch and when the parameters change; that the "
+            "deflection itself returns to zero is not claimed, nor that it "
+            "stays bounded under a command or other input."
+        ),
+    }
     formula: ClassVar[str] = "F + (b/k) F' = b δ'"
     kinds: ClassVar[tuple[str, ...]] = (STIFFNESS, DAMPING)
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
@@ -64,32 +61,26 @@ class Maxwell(AbstractLinearLaw):
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
-        return float(self.k) * Relaxation(motion, self.relaxation_time).y
+        return float(self.k) * motion.relaxed(self.relaxation_time).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k and log b, shape (n, 2)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import Relaxation
-
-        relaxed = Relaxation(motion, self.relaxation_time)
+        relaxed = motion.relaxed(self.relaxation_time)
         y, slope = relaxed.y, relaxed.slope
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
 
     @classmethod
     def guesses(cls, motion: Motion, solve: Solve) -> Iterator[Maxwell]:
         """Yield the best law for each of some time constants."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
         for tau in motion.time_constants.tolist():
-            (k,) = solve(Relaxation(motion, tau).y)
+            (k,) = solve(motion.relaxed(tau).y)
             yield cls(k, k * tau)
 
     @classmethod
     def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
-        """Yield what is known of the deflection, which is no state."""
+        """Yield the assumption on the deflection, which is no state."""
         yield Assumption.create("memory.maxwell", environment=environment)
 
     @property

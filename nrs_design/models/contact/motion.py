@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from nrs_design.models.contact.relaxation import Relaxation
+
     Array = NDArray[np.float64]
 
 
@@ -64,6 +66,12 @@ class Motion:
 
         duration = float(self.time[-1] - self.time[0])
         return np.geomspace(2 * float(np.median(self.steps)), 5 * duration, 9)
+
+    def relaxed(self, time_constant: float) -> Relaxation:
+        """Return the response of a spring and a damper in a row; time constant in s."""
+        from nrs_design.models.contact.relaxation import Relaxation
+
+        return Relaxation(self.steps, self.increments, time_constant)
 
     def moved(self, shift: float) -> Motion:
         """Return the motion with its deflection counted from so much further; velocities stay."""

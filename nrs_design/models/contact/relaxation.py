@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
-
+Array = NDArray[np.float64]
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
 
 
@@ -23,12 +21,14 @@ class Relaxation:
     ``h = dt / tau`` and ``a = exp(-h)`` has no discretization error.
     """
 
-    motion: Motion  # Deflection, n samples
+    # steps, increments: shape (n - 1,). Between samples: time in s, and change of the deflection.
+    steps: Array
+    increments: Array
     time_constant: float  # tau in s
 
     @cached_property
     def _h(self) -> Array:
-        return self.motion.steps / self.time_constant
+        return self.steps / self.time_constant
 
     @cached_property
     def _a(self) -> Array:
@@ -41,12 +41,12 @@ class Relaxation:
     @cached_property
     def y(self) -> Array:
         """At the samples, shape (n,), in m (rad)."""
-        return run_first_order(self._a, self._gain * self.motion.increments)
+        return run_first_order(self._a, self._gain * self.increments)
 
     @property
     def slope(self) -> Array:
         """The derivative of y by log tau, shape (n,), in m (rad)."""
-        a, increments = self._a, self.motion.increments
+        a, increments = self._a, self.increments
         return run_first_order(a, a * self._h * self.y[:-1] + (self._gain - a) * increments)
 
 

@@ -20,14 +20,13 @@ from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page, offer_of
 from nrs_design.reporting.evidence.runs import Bound, run_figures
 from nrs_design.reporting.formatting import number, roots
-from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.periodic import (
     PeriodicRun,
     mixture_matrix,
     periodic_run,
     time_of_growth,
 )
-from nrs_design.simulation.switched import SwitchedRun, alone, mode_eigenvalues
+from nrs_design.simulation.switched import SwitchedRun, all_modes, alone, mode_eigenvalues
 
 _TITLE = "Simulated witness"
 _MODE = "a mode that is not stable"

@@ -18,10 +18,10 @@ from nrs_design.reporting.evidence.offers import Offer, Page
 from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run, draw_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.titles import SATURATION
-from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
+from nrs_design.simulation.greedy import greedy_run, relative_norms
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import share_cut_off
-from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.simulation.switched import SwitchedRun, all_modes
 from nrs_design.simulation.worst_case import WorstRun, output_values, worst_against
 
 _BOUND = (

@@ -16,10 +16,10 @@ from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.words import allowed
 from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms, slowest
+from nrs_design.simulation.greedy import greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rules import fitting_step
-from nrs_design.simulation.switched import SwitchedRun, alone, fine_step, worst_direction
+from nrs_design.simulation.switched import SwitchedRun, all_modes, alone, fine_step, worst_direction
 
 Bound = tuple[str, Array]
 

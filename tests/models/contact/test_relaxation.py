@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.models.contact.motion import Motion
-from nrs_design.models.contact.relaxation import Relaxation, run_first_order
+from nrs_design.models.contact.relaxation import run_first_order
 from tests.identification.support import wobble
 
 TAU = 0.3
@@ -15,7 +15,7 @@ TAU = 0.3
 def test_ramp_then_hold():
     time = np.array([0.0, 0.05, 0.3, 0.5, 1.1, 1.2])
     motion = Motion(time, 2.0 * np.minimum(time, 0.5))
-    y = Relaxation(motion, TAU).y
+    y = motion.relaxed(TAU).y
     top = 2.0 * TAU * (1 - np.exp(-0.5 / TAU))
     wanted = np.where(
         time <= 0.5, 2.0 * TAU * (1 - np.exp(-time / TAU)), top * np.exp((0.5 - time) / TAU)
@@ -26,8 +26,8 @@ def test_ramp_then_hold():
 @given(st.floats(-2.0, 2.0))
 def test_slope_by_the_logarithm_of_the_time_constant(log_tau):
     motion, h = wobble(2), 1e-5
-    above, below = (Relaxation(motion, np.exp(log_tau + step)).y for step in (h, -h))
-    slope = Relaxation(motion, float(np.exp(log_tau))).slope
+    above, below = (motion.relaxed(np.exp(log_tau + step)).y for step in (h, -h))
+    slope = motion.relaxed(float(np.exp(log_tau))).slope
     assert slope == pytest.approx((above - below) / (2 * h), abs=1e-7)
 
 

@@ -52,7 +52,7 @@ def map_in_processes(
     from multiprocessing import active_children, get_context
 
     # Workers start at any time until the last result is there.
-    before = dict(os.environ)
+    before, others = os.environ.copy(), active_children()
     os.environ |= SAFE_PATH
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin)
     try:
@@ -67,10 +67,12 @@ def map_in_processes(
     finally:
         # Nobody waits for what was begun and is not wanted any more.
         for worker in active_children():
-            worker.terminate()
+            if worker not in others:
+                worker.terminate()
         pool.shutdown(cancel_futures=True)
-        for name in SAFE_PATH.keys() - before.keys():
+        for name in os.environ.keys() - before.keys():
             del os.environ[name]
+        os.environ |= before
 
 
 def _begin() -> None:

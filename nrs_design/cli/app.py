@@ -62,7 +62,16 @@ def _printably(call: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         if hasattr(error, "format_message") and hasattr(error, "message"):
             # pydantic puts "Value error, " in front of our messages.
             error.message = printable(error.message).removeprefix("Value error, ")
+            _print_as_json(NrsDesignError(printable(error.format_message())))
         raise
+
+
+def _print_as_json(error: NrsDesignError) -> None:
+    """Print an error where JSON is wanted, whether or not the command was read."""
+    if "--json" in sys.argv:
+        from nrs_design.cli.errors import error_summary
+
+        print_json("error", error_summary(error))
 
 
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
@@ -145,10 +154,9 @@ def main() -> None:
     try:
         _run()
     except NrsDesignError as error:
-        from nrs_design.cli.errors import error_summary, print_error
+        from nrs_design.cli.errors import print_error
 
-        if "--json" in sys.argv:
-            print_json("error", error_summary(error))
+        _print_as_json(error)
         print_error(error)
         stopped = isinstance(error, ClockError)
         sys.exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE)

@@ -16,7 +16,7 @@ SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
 # The key of a spec: at the beginning of a line, or of a mapping in one line; indented if quoted.
 _KIND = re.compile(
-    rf"^\ufeff?(?:\s*\{{?\s*(?=[\"'])|\{{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w./-])",
+    rf"^\ufeff?(?:[ \t]*\{{?[ \t]*(?=[\"'])|\{{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w./-])",
     re.MULTILINE,
 )
 

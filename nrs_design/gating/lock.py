@@ -6,18 +6,15 @@ import hashlib
 import json
 import os
 import posixpath
-from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
-    SerializerFunctionWrapHandler,
     ValidationError,
     model_serializer,
     model_validator,
@@ -26,8 +23,15 @@ from pydantic import (
 from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec
-from nrs_design.spec.scenarios import ScenarioSpec
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from pathlib import Path
+
+    from pydantic import SerializerFunctionWrapHandler
+
+    from nrs_design.spec import LoadedSpec
+    from nrs_design.spec.scenarios import ScenarioSpec
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
@@ -173,7 +177,7 @@ def hash_followed(loaded: LoadedSpec) -> Mapping[str, str]:
 
 def _hashes(loaded: LoadedSpec, counts: Callable[[ScenarioSpec], bool]) -> dict[str, str]:
     spec, found = loaded.spec, {}
-    runs = spec.scenarios.values() if isinstance(spec, InteractionDesignSpec) else ()
+    runs = spec.scenarios.values() if spec.kind == "interaction-design" else ()
     for name in sorted({run.command.csv for run in runs if run.command.csv and counts(run)}):
         with suppress(OSError), open_regular(loaded.path.parent / name) as stream:
             found[name] = hashlib.file_digest(stream, "sha256").hexdigest()

@@ -66,8 +66,8 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         kept = [entry for entry in old if entry.path not in dropped]
         if kept or fresh or file.exists():
             entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
-            if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
-                write_output(file, dump_lock(lock), replaces=LOCK)
+            if entries != locked or not file.exists():
+                write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
                 outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}

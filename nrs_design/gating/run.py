@@ -200,9 +200,10 @@ def _examine(
     page = files.report(loaded.spec.name)
     fulfilled = all(item.fulfilled for item in obligations)
     renewed = kept is None or not fulfilled
-    if files.every_page or (files.html and (renewed or not _is_of(page, certificate))):
+    origin = origin_of(loaded.path, page)
+    if files.every_page or (files.html and (renewed or not _is_of(page, certificate, origin))):
         progress("report")
-        _write_page(result, page, analysis, blocked)
+        _write_page(result, page, origin, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
         return replace(outcome, recorded=recorded)
@@ -249,28 +250,31 @@ def _judge_scenarios(
             yield from examiner.scenario(name, simulated)
 
 
-def _is_of(page: Path, certificate: Certificate | None) -> bool:
+def _is_of(page: Path, certificate: Certificate | None, origin: str) -> bool:
     """Tell whether a page is not there, or is as this program drew it of this certificate.
 
-    To draw it anew takes long.
+    To draw it anew takes long. Its spec must lie where it did.
     """
     if not page.exists() or certificate is None:
         return not page.exists()
     body, _, seal = page.read_text(encoding="utf-8", errors="replace").rpartition(_SEAL)
-    return certificate.id in body and seal == _seal(body)
+    return certificate.id in body and seal == _seal(body, origin)
 
 
-def _seal(body: str) -> str:
-    """Return the end of a page: what shows that nobody has changed it."""
-    return f"{hashlib.sha256(f'{__version__}{body}'.encode()).hexdigest()} -->\n"
+def _seal(body: str, origin: str) -> str:
+    """Return the end of a page: what shows that nobody has changed it, or moved its spec."""
+    return f"{hashlib.sha256(f'{__version__}{origin}{body}'.encode()).hexdigest()} -->\n"
 
 
 def _write_page(
-    result: Result, page: Path, analysis: DesignAnalysis | None, blocked: Blocked | None
+    result: Result,
+    page: Path,
+    origin: str,
+    analysis: DesignAnalysis | None,
+    blocked: Blocked | None,
 ) -> None:
     # Drawing costs seconds to import; a run without reports must not pay for it.
     from nrs_design.reporting import build_report, render_html
 
-    origin = origin_of(result.loaded.path, page)
     html = render_html(build_report(result, analysis, blocked=blocked), origin)
-    write_output(page, f"{html}{_SEAL}{_seal(html)}", replaces=PAGE)
+    write_output(page, f"{html}{_SEAL}{_seal(html, origin)}", replaces=PAGE)

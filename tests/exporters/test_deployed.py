@@ -55,12 +55,15 @@ def compared(folder, sampled, sampled_export):
 def test_a_folder_as_exported(folder, compared):
     (folder / "soft-tissue.cert.json").write_text("{}")
     (folder / "main.c").write_text("int main(void) { return 0; }")
+    # A compiler takes this one, too, where its folder is named first.
+    (folder / "old").mkdir()
+    (folder / "old/soft-tissue.h").touch()
     found = compared()
     assert found.differences == ()
     assert {file.name for file in found.compared} == {
         f"soft-tissue{ending}" for name in EXECUTABLE for ending in format_of(name).files
     }
-    assert found.left_out == "how it is compiled, main.c"
+    assert found.left_out == "how it is compiled, main.c, old/soft-tissue.h"
 
 
 @pytest.mark.parametrize("ending", [".h", "_test.c", ".fmu"])
@@ -82,6 +85,8 @@ CHANGES = [
     ("a flag", ".cmake", "-ffp-contract=off", "-ffast-math"),
     ("ends of lines", ".c", "\n", "\r\n"),
     ("no text at all", ".c", r"(?s).*", ""),
+    ("its last end of line is gone", ".c", r"\n\Z", ""),
+    ("an end of line more", ".c", r"\n\Z", "\n\n"),
 ]
 
 

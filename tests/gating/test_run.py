@@ -159,6 +159,17 @@ def test_a_page_that_somebody_changed_is_drawn_again(tmp_path, drawn, page):
     assert [drawn()[0], drawn()[0]] == [True, False]
 
 
+def test_a_page_of_a_spec_that_has_moved_is_drawn_again(tmp_path, page):
+    """It says where its spec lies, and so whose it is."""
+    spec, moved = tmp_path / "mine.nrs.yaml", tmp_path / "moved/mine.nrs.yaml"
+    moved.parent.mkdir()
+    spec.rename(moved)
+    assert not run_gate([moved], Files(folder=tmp_path / "reports")).broken
+    drawn_again = (tmp_path / "reports/given.html").read_bytes()
+    assert b"../moved/mine.nrs.yaml" in drawn_again
+    assert b"../moved/mine.nrs.yaml" not in page
+
+
 def test_what_is_recorded_and_fulfilled_has_no_page_unless_all_are_asked_for(tmp_path, drawn, page):
     place = tmp_path / "reports/given.html"
     place.unlink()

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
-
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
@@ -25,13 +22,9 @@ COVERED = (
 def choose_theorem(certificate: Certificate) -> Theorem:
     """Return the theorem of a certificate; a `DesignError` if the library for Coq has none."""
     system, evidence = certificate.system, certificate.evidence
-    kind = "nothing" if evidence is None else evidence.kind
-    if kind not in _BY_KIND:
-        raise _refused(f"stability is shown by {kind if evidence is None else f'kind {kind}'}")
-    return _BY_KIND[kind](system, evidence)
-
-
-def _graph_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
+    if not isinstance(evidence, FormsOnGraph):
+        kind = "nothing" if evidence is None else f"kind {evidence.kind}"
+        raise _refused(f"stability is shown by {kind}")
     if (odd := _find_uncovered(system, evidence)) is not None:
         raise _refused(odd)
     if evidence.stays is not None:
@@ -62,9 +55,3 @@ def _refused(reason: str) -> DesignError:
         f"there is no theorem for Coq of this certificate: {reason}",
         remedy=f"there is one for {COVERED}",
     )
-
-
-# What is written for a kind of evidence; others are refused.
-_BY_KIND: Mapping[str, Callable[[SwitchedSystem, Any], Theorem]] = {
-    "graph": _graph_theorem,
-}

@@ -42,7 +42,6 @@ RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
 )
 SWEEP = b"point,exit_code,message,"
-SWEEP_ANSWERS = b'{"schema": "nrs-design/answers/1"}'
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
 GATE = re.compile(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -22,8 +22,7 @@ from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from nrs_design.cli.sweep_point import Job
-    from nrs_design.sweeps.answers import PointAnswer
+    from nrs_design.cli.sweep_point import Job, PointAnswer
     from nrs_design.sweeps.table import Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
@@ -73,13 +72,6 @@ def sweep(
             "count '1..250/16 N*m/rad'. Up to three times: every combination is a point.",
         ),
     ],
-    resume: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Keep every answer in this file as it comes; the same command goes on from it.",
-        ),
-    ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
     shown: Annotated[
         list[str] | None,
@@ -96,9 +88,6 @@ def sweep(
 ) -> Answer:
     """Run a command for every combination of values of one to three fields of a spec.
 
-    What a file of --resume holds as proved or refuted is used again only if its certificate is
-    checked again, and holds.
-
     The exit code is that of the worst point: 4 before 2 before 1 before 3 before 0.
 
     Example: nrs-design sweep SPEC --set 'environments.soft.stiffness=500..2500/5 N/m'
@@ -109,14 +98,15 @@ def sweep(
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
     from nrs_design.sweeps.grid import read_grid
-    from nrs_design.sweeps.table import chosen
+    from nrs_design.sweeps.table import chosen, flat
 
     if table is not None:
         check_place(table, SWEEP)
     name = _named(words)
     job = Job(spec, read_grid(spec, fields), name, tuple(words[len(name) :]))
     _check_options(job)
-    found = _Swept.of(job, _points(job, jobs, resume))
+    points = _points(job, jobs)
+    found = _Swept(job, points, [dict(flat(point.result or {})) for point in points])
     names = chosen(found.rows, shown) if shown else None
     if table is not None:
         write_output(table, found.table(), replaces=SWEEP)
@@ -154,41 +144,27 @@ def _check_options(job: Job) -> None:
             )
 
 
-def _points(job: Job, jobs: int, file: Path | None) -> list[PointAnswer]:
-    """Compute what is not there, and return all points in the order of the grid."""
+def _points(job: Job, jobs: int) -> list[PointAnswer]:
+    """Return the answers of all points, in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
     from nrs_design.processes import map_in_processes
-    from nrs_design.sweeps.answers import add_answer, read_answers
 
-    there = {} if file is None else read_answers(file)
-    points = [(values, there.get(values)) for values in job.grid.points]
+    points = job.grid.points
     found: dict[int, PointAnswer] = {}
-    computed = 0
     with progress(f"{len(points)} points") as step:
         for at, answer in map_in_processes(partial(answer_point, job), points, jobs):
             found[at] = answer
-            if answer != points[at][1]:
-                computed += 1
-                if file is not None and answer.error is None:
-                    add_answer(file, answer)
             step(f"{len(found)} done")
-    note(f"{computed} computed, {len(found) - computed} were there")
     return [found[at] for at in range(len(points))]
 
 
 @dataclass(frozen=True, slots=True)
 class _Swept:
-    """What a sweep has found: the same for any number of processes."""
+    """Answers of a sweep, the same for any number of processes."""
 
     job: Job
     points: Sequence[PointAnswer]
     rows: Sequence[Row]  # Facts of each point
-
-    @classmethod
-    def of(cls, job: Job, points: Sequence[PointAnswer]) -> Self:
-        from nrs_design.sweeps.table import flat
-
-        return cls(job, points, [dict(flat(point.result or {})) for point in points])
 
     def facts(self) -> dict[str, Any]:
         """Return the content of the JSON document."""

@@ -48,18 +48,6 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
-def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
-    """Return those facts of a decision that its certificate shows by itself."""
-    return {
-        **_stated(certificate, certificate, spec),
-        **_proved_rate(certificate),
-        **_described(certificate, certificate.coordinates),
-        "gains": dict(certificate.gains),
-        "assumptions": list(sentences(certificate.granted)),
-        "certificate_id": certificate.id,
-    }
-
-
 def _described(found: Certification | Certificate, coordinates: str | None) -> dict[str, Any]:
     system = found.system
     return {

@@ -16,7 +16,8 @@ SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
 # The key of a spec: at the beginning of a line, or of a mapping in one line; indented if quoted.
 _KIND = re.compile(
-    rf"^\ufeff?(?:[ \t]*\{{?[ \t]*(?=[\"'])|\{{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w./-])",
+    r"^\ufeff?(?:[ \t]*\{?[ \t]*(?=[\"'])|\{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?"
+    rf"({'|'.join(SPEC_KINDS)})(?![\w./-])",
     re.MULTILINE,
 )
 

@@ -25,13 +25,11 @@ from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
     from pathlib import Path
 
     from pydantic import SerializerFunctionWrapHandler
 
     from nrs_design.spec import LoadedSpec
-    from nrs_design.spec.scenarios import ScenarioSpec
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
@@ -162,23 +160,15 @@ class Lock(_Frozen):
         return self
 
 
-def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
+def hash_recorded(loaded: LoadedSpec) -> dict[str, str]:
     """Return the SHA-256 of every file that scenarios with limits follow, by its name in the spec.
 
     Files are below its folder; one that cannot be read is left out.
     """
-    return _hashes(loaded, lambda scenario: scenario.limits is not None)
-
-
-def hash_followed(loaded: LoadedSpec) -> Mapping[str, str]:
-    """Return the SHA-256 of every file that any scenario follows; see `hash_recorded`."""
-    return _hashes(loaded, lambda scenario: True)
-
-
-def _hashes(loaded: LoadedSpec, counts: Callable[[ScenarioSpec], bool]) -> dict[str, str]:
     spec, found = loaded.spec, {}
     runs = spec.scenarios.values() if spec.kind == "interaction-design" else ()
-    for name in sorted({run.command.csv for run in runs if run.command.csv and counts(run)}):
+    limited = {run.command.csv for run in runs if run.limits is not None}
+    for name in sorted(filter(None, limited)):
         with suppress(OSError), open_regular(loaded.path.parent / name) as stream:
             found[name] = hashlib.file_digest(stream, "sha256").hexdigest()
     return found

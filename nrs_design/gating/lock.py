@@ -8,6 +8,7 @@ import os
 import posixpath
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
@@ -25,8 +26,6 @@ from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from pydantic import SerializerFunctionWrapHandler
 
     from nrs_design.spec import LoadedSpec

@@ -29,7 +29,6 @@ COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive
 _json: ContextVar[bool] = ContextVar("json", default=False)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 _verbose: ContextVar[bool] = ContextVar("verbose", default=False)
-_taken: ContextVar[list[str] | None] = ContextVar("taken", default=None)
 
 
 @contextmanager
@@ -67,22 +66,7 @@ def is_quiet() -> bool:
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    text, taken = json_text(envelope, allow_nan=False), _taken.get()
-    if taken is None:
-        print(text)
-    else:
-        taken.append(text)
-
-
-@contextmanager
-def taking_json() -> Iterator[list[str]]:
-    """Take the documents that are printed within, in this thread, in place of printing them."""
-    documents: list[str] = []
-    token = _taken.set(documents)
-    try:
-        yield documents
-    finally:
-        _taken.reset(token)
+    print(json_text(envelope, allow_nan=False))
 
 
 def say(line: str = "", *, verdict: str = "", hanging: int = 2) -> None:

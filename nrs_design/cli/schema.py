@@ -11,14 +11,12 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note
 
-# Schemas that the command prints.
-Described = Literal["spec", "export"]
-
 
 @command("schema", has_json=False)
 def schema(
     of: Annotated[
-        Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
+        Literal["spec", "export"],
+        typer.Option(help="Of spec files (draft-07), or of export records (2020-12)."),
     ] = "spec",
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
 ) -> Answer:
@@ -28,22 +26,14 @@ def schema(
 
     Example: nrs-design schema --of export
     """
+    from nrs_design.exporters.record import record_schema_text
     from nrs_design.output import SCHEMA, write_output
+    from nrs_design.spec.schema import schema_text
 
-    text = _text(of)
+    text = record_schema_text() if of == "export" else schema_text()
     if out is None:
         sys.stdout.write(text)
-        return Answer()
-    write_output(out, text, replaces=SCHEMA)
-    note(f"schema written to {out}")
+    else:
+        write_output(out, text, replaces=SCHEMA)
+        note(f"schema written to {out}")
     return Answer()
-
-
-def _text(of: Described) -> str:
-    if of == "export":
-        from nrs_design.exporters.record import record_schema_text
-
-        return record_schema_text()
-    from nrs_design.spec.schema import schema_text as spec_schema_text
-
-    return spec_schema_text()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,7 +13,6 @@ from typing import Any
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary
-from nrs_design.cli.printing import taking_json
 from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
@@ -68,13 +69,13 @@ def _computed(job: Job) -> tuple[int, dict[str, Any]]:
 
     arguments = [*job.command, str(job.spec), *job.options, "--json", "--quiet"]
     program, code = program_of(job.command[0]), exit_codes.PROVED
-    with taking_json() as documents:
+    with redirect_stdout(io.StringIO()) as printed:
         try:
             with program.make_context("nrs-design", arguments) as context:
                 program.invoke(context)
         except typer.Exit as end:
             code = end.exit_code
-    return code, _lasting(json.loads(documents[-1]))
+    return code, _lasting(json.loads(printed.getvalue()))
 
 
 @cache

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -66,15 +65,9 @@ class Examiner:
     def keys_of_mode(self, name: str) -> Keys:
         """Return the keys of a given mode, or of the controller of an assembled mode."""
         # Labels have no slash: what follows it names the contact or the corner of a box.
-        label = name.partition("/")[0]
-        index = self._modes.get(label)
-        return ("controllers", label) if index is None else ("modes", index)
-
-    @cached_property
-    def _modes(self) -> Mapping[str, int]:
-        spec = self.loaded.spec
-        modes = spec.modes if spec.kind == "switched-system" else ()
-        return {mode.name: index for index, mode in enumerate(modes)}
+        label, spec = name.partition("/")[0], self.loaded.spec
+        modes = [mode.name for mode in spec.modes] if spec.kind == "switched-system" else []
+        return ("modes", modes.index(label)) if label in modes else ("controllers", label)
 
     def keys_of_goal(self, controller: str, key: str) -> Keys:
         """Return the keys of a goal of a controller: its own, or that of the whole spec."""
@@ -181,12 +174,9 @@ class Examiner:
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""
-        holds = fault is None
-        said = "holds, checked exactly" if holds else f"is rejected: {fault}"
-        message = f"{file.as_posix()} {said}"
-        return self.obligation(
-            rules.CERTIFICATE_HOLDS, "certificate", _met(holds), message, ("name",)
-        )
+        said = "holds, checked exactly" if fault is None else f"is rejected: {fault}"
+        status, message = _met(fault is None), f"{file.as_posix()} {said}"
+        return self.obligation(rules.CERTIFICATE_HOLDS, "certificate", status, message, ("name",))
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
@@ -280,8 +270,8 @@ class Examiner:
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
         message = f"simulated: {error.message} (no run, so no limit is met)"
-        place = ("scenarios", name)
-        return self.obligation(rules.SCENARIO_LIMIT, name, Status.MISSED, message, place)
+        keys: Keys = ("scenarios", name)
+        return self.obligation(rules.SCENARIO_LIMIT, name, Status.MISSED, message, keys)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
@@ -319,14 +309,11 @@ class Examiner:
         if spec.goals is not None and spec.goals.peak_torque is not None:
             return
         bound = bound_on(certificate.system, certificate.statements, "force")
-        if (
-            bound is not None
-            and bound.output.limit is not None
-            and bound.level > bound.output.limit
-        ):
+        limit = None if bound is None else bound.output.limit
+        if bound is not None and limit is not None and bound.level > limit:
             unit = bound.output.unit
             message = (
-                f"the limit of {lower(bound.output.limit)} {unit} is not shown to be kept: up to "
+                f"the limit of {lower(limit)} {unit} is not shown to be kept: up to "
                 f"{upper(bound.level)} {unit} are proved under all disturbances at once; "
                 "`goals: peak_torque` asks for it"
             )

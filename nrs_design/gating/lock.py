@@ -88,9 +88,7 @@ class LockedGoal(_Frozen):
 
     @model_validator(mode="after")
     def _check_rule(self) -> LockedGoal:
-        if self.rule not in rules.RETIRED and (
-            self.rule not in rules.RULES or rules.RULES[self.rule] in DECIDED_AGAIN
-        ):
+        if self.rule not in rules.RULES or rules.RULES[self.rule] in DECIDED_AGAIN:
             raise ValueError("this rule is not one that is locked")
         return self
 
@@ -102,11 +100,6 @@ class LockedRemark(_Frozen):
     at: list[str]  # Keys that lead to its place in the spec
     # As of a `Caution`, three digits of it: the last ones are of a processor.
     beyond: float = Field(gt=0, allow_inf_nan=False)
-
-
-def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
-    """Return the goals of rules that there are: an older release locked others."""
-    return [goal for goal in goals if goal.rule not in rules.RETIRED]
 
 
 class LockedSpec(_Frozen):
@@ -123,7 +116,7 @@ class LockedSpec(_Frozen):
     rate: str | None
     certificate: LockedCertificate | None
     gains: dict[str, dict[str, str]]
-    goals: Annotated[list[LockedGoal], AfterValidator(_skip_retired)]
+    goals: list[LockedGoal]
     recorded: dict[str, Sha256] = Field(default_factory=dict)
     remark: LockedRemark | None = None
 

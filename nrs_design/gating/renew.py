@@ -54,7 +54,9 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         present = (spec for spec in outcome.specs if is_there(spec.path))
         examined = {relative_to_lock(spec.path, file): spec for spec in present}
         locked = read_lock_if_any(file).specs
-        old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
+        # Without a verdict now, what was locked of an unchanged spec still holds.
+        still = {(p, s.sha256) for p, s in examined.items() if s.verdict is None}
+        old = [e for e in locked if e.path not in examined or (e.path, e.sha256) in still]
         gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
         written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
         # A spec that was renamed: its certificate is now found under the new name of the file.
@@ -97,11 +99,6 @@ def _check_kept(spec: SpecOutcome) -> None:
         path=spec.certificate,
         remedy="let it end, then run nrs-design gate again",
     )
-
-
-def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
-    """Tell whether a spec is unchanged since it was locked, and has no verdict now."""
-    return spec.verdict is None and spec.sha256 == entry.sha256
 
 
 # A value that has no bound is so many times over its limit.

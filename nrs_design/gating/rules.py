@@ -50,8 +50,6 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 WORDS: Mapping[str, Word] = MappingProxyType(
     {word: Word(word, **texts) for word, texts in _TABLE["words"].items()}
 )
-# Ids of rules that there were; none of them is ever given to another rule.
-RETIRED = frozenset({"NRS111"})
 
 SPEC = RULES["NRS001"]
 MODE_STABLE = RULES["NRS101"]

@@ -115,7 +115,12 @@ def _examine_safely(
     namesake, name = namesakes.get(loaded.path), loaded.spec.name
     try:
         if namesake is not None:
-            raise _shared_name(loaded, namesake)
+            place, remedy = loaded.place("name"), "give every spec a name of its own"
+            message = (
+                f"{namesake} is named {name!r} too, and their files would overwrite each other"
+            )
+            fault = Fault(message, place.line, place.column, remedy)
+            raise SpecError.of((fault,), loaded.path)
         with about(getattr(loaded.spec, "axis", None)):
             return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
     except Exception as error:
@@ -146,13 +151,6 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
         named[loaded.spec.name.casefold()].append(loaded.path)
     shared = (paths for paths in named.values() if len(paths) > 1)
     return {path: paths[paths[0] == path] for paths in shared for path in paths}
-
-
-def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
-    place, remedy = loaded.place("name"), "give every spec a name of its own"
-    named = f"{namesake} is named {loaded.spec.name!r} too"
-    message = f"{named}, and their files would overwrite each other"
-    return SpecError.of((Fault(message, place.line, place.column, remedy),), loaded.path)
 
 
 def _examine(

@@ -9,7 +9,7 @@ import io
 import platform
 import shutil
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -99,17 +99,11 @@ class Variable:
 
 def variables_of(law: StepLaw) -> tuple[Variable, ...]:
     """Return all real variables of a law by their numbers: inputs, then outputs, then states."""
-    return tuple(Variable(name, i, *rest) for i, (name, *rest) in enumerate(_rows(law)))
-
-
-def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
-    for value in law.inputs:
-        yield value.name, f"in.{value.name}", "input", value.unit, value.meaning
-    for name in law.outputs:
-        meaning = "what the step computed; 0 where it was not valid"
-        yield name, f"out.{name}", "output", law.units[name], meaning
-    for value in law.states:
-        yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
+    computed = "what the step computed; 0 where it was not valid"
+    rows = [(v.name, f"in.{v.name}", "input", v.unit, v.meaning) for v in law.inputs]
+    rows += [(name, f"out.{name}", "output", law.units[name], computed) for name in law.outputs]
+    rows += [(f"state.{v.name}", f"state.{v.name}", "local", v.unit, v.meaning) for v in law.states]
+    return tuple(Variable(name, number, *rest) for number, (name, *rest) in enumerate(rows))
 
 
 def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:

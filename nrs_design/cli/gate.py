@@ -85,7 +85,7 @@ def gate(
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.output import LOCK, check_place
 
-    chosen = _format_of(format_)
+    chosen = format_of(format_)
     _check_options(out, jobs, locked=locked, prune=prune)
     refuse_both(("--pages", "--no-reports", pages and no_reports))
     refuse_both(("--pages", "--locked", pages and locked))
@@ -142,7 +142,7 @@ def _warn(item: Caution) -> None:
     note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}")
 
 
-def _format_of(format_: GateFormat) -> GateFormat:
+def format_of(format_: GateFormat) -> GateFormat:
     """Return the format that is asked for; --json is short for one of them."""
     as_json = wants_json()
     refuse_both(("--json", f"--format {format_}", as_json and format_ not in ("text", "json")))

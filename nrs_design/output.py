@@ -20,10 +20,8 @@ COQ = b"(* nrs-design proof for Coq"
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
 C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"
-C_MONITOR, C_MONITOR_HEADER = (
-    b"/* nrs-design C monitor\n",
-    b"/* nrs-design C header of a monitor\n",
-)
+C_MONITOR = b"/* nrs-design C monitor\n"
+C_MONITOR_HEADER = b"/* nrs-design C header of a monitor\n"
 CMAKE = b"# nrs-design CMake file\n"
 # The first entry of the archive, which is stored as it is, and always the same.
 FMU = (
@@ -127,7 +125,7 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
         raise OutputError("names a device on Windows", path=path, remedy="name another file")
     with _told(path):
         _refuse_links(path)
-        check_replaceable(path, replaces)
+        _refuse_foreign(path, replaces)
         folder = next(folder for folder in path.parents if folder.exists())
         if not folder.is_dir():
             raise NotADirectoryError(ENOTDIR, os.strerror(ENOTDIR))
@@ -190,7 +188,7 @@ def _refuse_links(path: Path) -> None:
             )
 
 
-def check_replaceable(path: Path, beginning: Beginning) -> None:
+def _refuse_foreign(path: Path, beginning: Beginning) -> None:
     """Refuse a place that holds something else than a file that begins in one of these ways."""
     if not path.exists():
         return

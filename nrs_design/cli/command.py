@@ -56,11 +56,7 @@ class Answer:
 
 
 def command(
-    name: str,
-    *,
-    has_json: bool = True,
-    each_axis: bool = False,
-    passes_on: bool = False,
+    name: str, *, has_json: bool = True, each_axis: bool = False, passes_on: bool = False
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
 

@@ -73,8 +73,12 @@ class Destinations:
                 refused = error
                 print_error(error)
         if self.report is not None:
+            from nrs_design.output import PAGE, write_output
+            from nrs_design.reporting import render_html
+
             with progress("figures"):
-                _write_page(self.report, page(), self.date)
+                day = self.date.date() if self.date else None
+                write_output(self.report, render_html(replace(page(), date=day)), replaces=PAGE)
             note(f"page written to {self.report}")
         if refused is None:
             # No option silences this.
@@ -90,14 +94,6 @@ class Destinations:
             facts=lambda: answer.facts() | {"not_written": not_written},
             code=answer.code if refused is None else exit_codes.USAGE,
         )
-
-
-def _write_page(path: Path, report: Report, date: datetime | None) -> None:
-    from nrs_design.output import PAGE, write_output
-    from nrs_design.reporting import render_html
-
-    report = replace(report, date=date.date() if date else None)
-    write_output(path, render_html(report), replaces=PAGE)
 
 
 def _write_spec(spec: LoadedSpec, text: str) -> None:

@@ -49,8 +49,7 @@ def export(
         ),
     ] = None,
     out: Annotated[
-        Path,
-        typer.Option(help="Folder; for a format of one file also that file, with its ending."),
+        Path, typer.Option(help="Folder; for a format of one file also that file, with its ending.")
     ] = Path("reports"),
     sample_time: Annotated[
         str | None,
@@ -82,26 +81,23 @@ def export(
         raise NrsDesignError(
             f"{format_} is not a format of this command", remedy="use `nrs-design ros2 export`"
         )
-    chosen = known_format(format_)
-    execution = _execution(chosen, sample_time, unproved=unproved)
+    execution = _execution(known_format(format_), sample_time, unproved=unproved)
     return _export_design(spec, format_, certificate, out, execution)
 
 
 def _list() -> Answer:
-    entries: list[dict[str, Any]] = [
+    entries = [
         {
             "name": name,
-            "purpose": item.purpose,
-            "needs": item.needs,
-            "files": [f"NAME{ending}" for ending in item.files],
+            "purpose": format_of(name).purpose,
+            "needs": format_of(name).needs,
+            "files": [f"NAME{ending}" for ending in format_of(name).files],
         }
-        for name, item in ((name, format_of(name)) for name in format_names())
-    ]
-    entries.append(ROS2)
+        for name in format_names()
+    ] + [ROS2]
     rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
     return Answer(
-        lambda: {"formats": entries},
-        lambda: print_table("", ("format", "what for", "needs"), rows),
+        lambda: {"formats": entries}, lambda: print_table("", ("format", "what for", "needs"), rows)
     )
 
 
@@ -131,11 +127,7 @@ def _seconds(text: str) -> Fraction:
 
 
 def _export_design(
-    spec: Path,
-    format_: str,
-    certificate: Path | None,
-    out: Path,
-    execution: Execution | None,
+    spec: Path, format_: str, certificate: Path | None, out: Path, execution: Execution | None
 ) -> Answer:
     from nrs_design.api.exported import Exported
     from nrs_design.exporters.export import export_design, export_proof
@@ -198,10 +190,9 @@ def _show(
         note(f"{name}: not exported: {result.reason}")
         return
     where = ", ".join(map(str, written))
-    if result.verdict == "proved":
-        say(f"{name}: PROVED, exported to {where}", verdict="proved")
-    else:
-        say(f"{name}: UNPROVED ({result.reason}), exported to {where}")
+    proved = result.verdict == "proved"
+    verdict = "PROVED" if proved else f"UNPROVED ({result.reason})"
+    say(f"{name}: {verdict}, exported to {where}", verdict="proved" if proved else "")
     if result.certificate is not None:
         note(f"certificate: {proof}")
     for remark in remarks:

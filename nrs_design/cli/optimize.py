@@ -156,18 +156,9 @@ def _print(shown: Optimum) -> None:
     if not items:
         note("no impedance controllers in this spec; see nrs-design tune for the others")
         return
-    columns = [
-        "controller",
-        f"Mt\n{unit('kg m^2')}",
-        f"Bt\n{unit('N m s/rad')}",
-        "cost",
-        "Ms",
-        "gain\nmargin",
-        "phase\nmargin",
-        "delay\nmargin",
-        "disk\nmargin",
-        f"stands up to\n{unit('N m/rad')}",
-    ]
+    margins = [f"{what}\nmargin" for what in ("gain", "phase", "delay", "disk")]
+    columns = ["controller", f"Mt\n{unit('kg m^2')}", f"Bt\n{unit('N m s/rad')}", "cost", "Ms"]
+    columns += [*margins, f"stands up to\n{unit('N m/rad')}"]
     print_table(f"{name}: {_worst_of(items)}", columns, [*map(_cells, items)])
     for line in _marks(items):
         say(line)
@@ -207,11 +198,9 @@ def _worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
     """Say over what the margins of a table are the worst."""
     from nrs_design.design.measures import MARGINS
 
-    if all(
-        one.proved is not None or one.everywhere for i in items for one in map(i.shown, MARGINS)
-    ):
-        return "the worst over all ranges"
-    return "the worst at the corners of all ranges"
+    shown = (one for item in items for one in map(item.shown, MARGINS))
+    whole = all(one.proved is not None or one.everywhere for one in shown)
+    return f"the worst {'over' if whole else 'at the corners of'} all ranges"
 
 
 def _print_basis(items: Sequence[ImpedanceAnalysis]) -> None:

@@ -88,8 +88,7 @@ Budget = Annotated[
     ),
 ]
 Memory = Annotated[
-    float | None,
-    typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2."),
+    float | None, typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2.")
 ]
 GradientSettings = Annotated[
     list[str] | None,
@@ -112,6 +111,5 @@ Date = Annotated[
 ]
 
 ReportTo = Annotated[
-    Path | None,
-    typer.Option("--report", metavar="FILE", help="Write a page with figures (.html)."),
+    Path | None, typer.Option("--report", metavar="FILE", help="Write a page with figures (.html).")
 ]

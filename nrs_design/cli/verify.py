@@ -94,10 +94,7 @@ def verify(
             _print(checked, None if loaded is None else loaded.spec)
 
     return Answer(
-        facts,
-        show,
-        exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
-        loud=rejected,
+        facts, show, exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED), loud=rejected
     )
 
 

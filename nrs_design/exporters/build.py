@@ -33,9 +33,7 @@ from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
 def build_record(
-    design: ControllerDesign,
-    certificate: Certificate,
-    spec: InteractionDesignSpec,
+    design: ControllerDesign, certificate: Certificate, spec: InteractionDesignSpec
 ) -> ExportRecord:
     """Put a design and its proof together.
 

@@ -14,13 +14,7 @@ from nrs_design.exporters.build import build_record, build_unproved, find_mismat
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed, interaction_of
-from nrs_design.pipeline.runs import (
-    Recorded,
-    run_certification,
-    run_design,
-    run_kept,
-    run_recorded,
-)
+from nrs_design.pipeline.runs import Recorded, run_certification, run_design, run_kept, run_recorded
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec

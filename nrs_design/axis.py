@@ -49,8 +49,6 @@ _SLIDING: Mapping[str, str] = {
     },
     "N*m*s/rad/(N*m)": "s/m",
 }
-# Of states of an axis that slides.
-_OF_STATES: Mapping[str, str] = {"m": "rad", "m/s": "rad/s", "N": "N*m"}
 # How a unit is written: in records, in tables of a terminal, and in pages and figures.
 _STYLES = (("*", "^2"), (" ", "^2"), ("\N{MIDDLE DOT}", "\N{SUPERSCRIPT TWO}"))
 
@@ -72,13 +70,6 @@ class AxisType(StrEnum):
         name, opened, rest = text.partition(" [")
         said, closed, more = rest.partition("]")
         return f"{name}{opened}{self.unit(said)}{closed}{more}" if opened else text
-
-    def turning(self, text: str) -> str:
-        """Return what a name with its unit, such as ``delta [m]``, is on an axis that turns."""
-        name, opened, rest = text.partition(" [")
-        if self is AxisType.ROTARY or not opened:
-            return text
-        return f"{name}{opened}{_OF_STATES[rest[:-1]]}]"
 
     @property
     def fine(self) -> float:

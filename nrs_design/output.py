@@ -59,9 +59,6 @@ MAKER = "nrs-design"
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
 )
-# How the names of pages end.
-PAGES = (".html", ".htm")
-
 # More than the longest of them that is no pattern, and than any file that a pattern is to tell.
 _LONGEST, _WHOLE = 256, 2**26
 
@@ -71,7 +68,7 @@ Output = tuple[Path, str | bytes, Beginning]
 
 def check_html(path: Path) -> None:
     """Refuse a name that is not one of a page in HTML."""
-    if path.suffix.lower() not in PAGES:
+    if path.suffix.lower() not in (".html", ".htm"):
         raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
 

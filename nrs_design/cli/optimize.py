@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum
     from nrs_design.pipeline.design import Designed
 
-_ON_BOUND = (
-    "the cost has neither noise of the sensor nor effort of the motor: look at both before you "
-    "take it"
-)
-
 
 @command("optimize", each_axis=True)
 def optimize(spec: SpecFile) -> Answer:
@@ -135,8 +130,10 @@ def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> No
             value = shown.designed.design.laws[name].gains[gain]
             times = f"{float(value / given.design.laws[name].gains[gain]):.3g} times the given one"
             on = bounds.get(f"{name} {gain}")
-            end = "" if on is None else f": on its {on} bound; {_ON_BOUND}"
-            say(f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}{end}")
+            said = f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
+            unseen = "the cost has neither noise of the sensor nor effort of the motor"
+            end = f": on its {on} bound; {unseen}: look at both before you take it"
+            say(said if on is None else said + end)
     if (delay := _declared(found)) is not None:
         say(f"proved for `sampling.delay: {delay}`, more than the spec declares")
 

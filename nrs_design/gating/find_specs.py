@@ -41,7 +41,7 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
             )
         for spec in specs:
             found.setdefault(os.path.realpath(spec), spec)
-    return tuple(axis for spec in sorted(found.values()) for axis in _axes_at(spec))
+    return tuple(axis for spec in sorted(found.values()) for axis in axes_or_whole(spec))
 
 
 def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
@@ -72,8 +72,8 @@ def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
     )
 
 
-def _axes_at(spec: Path) -> tuple[Path, ...]:
-    """Return the axes of a spec with several; that a file is wrong shows where it is read."""
+def axes_or_whole(spec: Path) -> tuple[Path, ...]:
+    """Return the axes of a spec with several, or the spec; what is wrong shows where it is read."""
     try:
         return axes_at(spec)
     except SpecError:

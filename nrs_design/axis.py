@@ -15,7 +15,7 @@ from functools import cache
 
 from nrs_design.errors import InternalError
 
-# What the driver of a motor takes.
+# Units of motor commands.
 COMMAND_UNITS = ("rpm", "V", "A", "counts")
 COMMON_UNITS = ("", "1", "s", "1/s", "J", "Hz", "%", "N", "N/m", "ms", "samples", "decades", "W")
 # Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
@@ -49,7 +49,7 @@ _SLIDING: Mapping[str, str] = {
     },
     "N*m*s/rad/(N*m)": "s/m",
 }
-# How a unit is written: in records, in tables of a terminal, and in pages and figures.
+# Product and square in records, in tables of a terminal, and in pages and figures.
 _STYLES = (("*", "^2"), (" ", "^2"), ("\N{MIDDLE DOT}", "\N{SUPERSCRIPT TWO}"))
 
 
@@ -60,7 +60,7 @@ class AxisType(StrEnum):
     PRISMATIC = "prismatic"
 
     def unit(self, turning: str) -> str:
-        """Return the unit of a quantity of the axis, for that of one that turns."""
+        """Return the unit of a quantity on this axis, given the unit on a rotary axis."""
         if turning not in _every():
             raise InternalError(f"{turning!r} is no unit of an axis")
         return turning if self is AxisType.ROTARY else _every()[turning]
@@ -104,7 +104,7 @@ def current() -> AxisType:
 
 
 def unit(turning: str) -> str:
-    """Return the unit on the `current` axis of what has this unit on one that turns."""
+    """Return the unit on the `current` axis, given the unit on a rotary axis."""
     return current().unit(turning)
 
 
@@ -123,7 +123,7 @@ def take(axis: object) -> Token[AxisType]:
 
 @contextmanager
 def about(axis: object) -> Iterator[None]:
-    """Take an axis for the `current` one; what is none is taken for one that turns."""
+    """Make an axis the `current` one; anything else stands for a rotary axis."""
     token = take(axis)
     try:
         yield

@@ -1,4 +1,4 @@
-"""Starts every other program and worker: none imports or runs what lies in the working folder.
+"""Start of other programs and workers, which import and run nothing of the working folder.
 
 That may be a stranger's, as the checkout is that a gate judges.
 """
@@ -17,7 +17,7 @@ from nrs_design.errors import NrsDesignError
 P = TypeVar("P")
 T = TypeVar("T")
 
-# Python that is started, by whatever it is, then leaves the working folder out of `sys.path`.
+# Every Python process with this variable leaves the working folder out of `sys.path`.
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 
 
@@ -65,7 +65,7 @@ def map_in_processes(
             remedy="there may be too little memory for so many: take fewer --jobs",
         ) from None
     finally:
-        # Nobody waits for what was begun and is not wanted any more.
+        # Results of remaining workers are not needed.
         for worker in active_children():
             if worker not in others:
                 worker.terminate()

@@ -20,8 +20,8 @@ from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 from nrs_design.wings import load_wing, wing_of
 
-# Each command is in the module of its name, here or in its wing. The help keeps groups and order:
-# that of the work.
+# The module of a command, here or in a wing, has the name of the command. The help lists groups and
+# commands in this order.
 GROUPS = {
     "Start": ("init", "identify", "check", "explain", "schema"),
     "Design": ("optimize", "tune", "mode-logic", "simulate"),
@@ -161,7 +161,7 @@ def main() -> None:
         stopped = isinstance(error, ClockError)
         sys.exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE)
     except OSError as error:
-        # Do not try to write the rest again at exit.
+        # At exit, Python must not write the remaining output again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         # Standard output has no name.
         failed = "the output cannot be written"

@@ -38,7 +38,7 @@ def print_error(error: NrsDesignError) -> None:
 
 
 def error_summary(error: NrsDesignError) -> dict[str, Any]:
-    """Return what ``--json`` prints about an error: its faults in file order, and their number."""
+    """Return the faults of an error in file order, and their number, for ``--json``."""
     return {
         "rule": error.rule,
         "count": len(error.faults),

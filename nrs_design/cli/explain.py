@@ -1,4 +1,4 @@
-"""``nrs-design explain``: what a rule or a verdict means, and what to do about it."""
+"""``nrs-design explain``: meaning and remedy of a rule or verdict."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.runs import Recorded
 
 
-# A command of its own writes it, since it proves another law.
+# Another command writes this format, because it proves another law.
 ROS2: dict[str, Any] = {
     "name": "ros2",
     "purpose": "impedance controllers as parameters of admittance_controller of ROS 2",
@@ -153,7 +153,7 @@ def _export_design(
             result = export_design(loaded, certificate, step, execution, recorded)
     remarks: tuple[str, ...] = ()
     if result.may_be_written:
-        # A design of which there is no program is told at its place in the spec.
+        # The error about a design without a program names its place in the spec.
         with placed(loaded):
             remarks = write_export(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.may_be_written else []
@@ -173,7 +173,7 @@ def _export_design(
 
 
 def _recorded(spec: Path, beside: Path) -> Recorded:
-    """Return the certificate that nrs.lock of this folder has for a spec; else the one beside."""
+    """Return the certificate of a spec in the nrs.lock of this folder; else that in `beside`."""
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import recorded_in
     from nrs_design.pipeline.runs import Recorded

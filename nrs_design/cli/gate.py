@@ -93,8 +93,8 @@ def gate(
     if against is not None:
         from nrs_design.gating.against import base_paths
 
-        # What cannot be compared is said before minutes of search. A lock file that is elsewhere
-        # would be compared with itself.
+        # Paths without a place in the base are refused before minutes of search; a lock file
+        # outside of both folders would be compared with itself.
         base_paths([*paths, lock], against)
     specs = find_specs(paths)
     if locked:
@@ -143,14 +143,14 @@ def _warn(item: Caution) -> None:
 
 
 def format_of(format_: GateFormat) -> GateFormat:
-    """Return the format that is asked for; --json is short for one of them."""
+    """Return the requested format; --json stands for ``--format json``."""
     as_json = wants_json()
     refuse_both(("--json", f"--format {format_}", as_json and format_ not in ("text", "json")))
     return "json" if as_json else format_
 
 
 def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) -> None:
-    """Refuse what excludes each other, and what must not be overwritten, before the work."""
+    """Refuse contradicting options and foreign output files before the work."""
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.output import GATE, check_place
 
@@ -167,7 +167,7 @@ def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) ->
 
 
 def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None:
-    """Write the document to where it is wanted; people see a text, too."""
+    """Write the document to stdout or the file --out, and a summary to the terminal."""
     from nrs_design.gating.formats import FORMATS
     from nrs_design.gating.formats.text import summary_line
     from nrs_design.output import GATE, write_output

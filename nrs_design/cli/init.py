@@ -89,6 +89,6 @@ def named_after(path: Path, template: str) -> str:
     name = re.sub("[^a-z0-9._-]+", "-", stem).strip("._-")[:64]
     if not name:
         return template
-    # The comment beside it stays in its column.
+    # The comment behind the name stays in its column.
     line = re.compile("^name: ([^ ]+)( *)", re.MULTILINE)
     return line.sub(lambda m: f"name: {name} ".ljust(len(m[0])), template, count=1)

@@ -77,7 +77,7 @@ def optimize(spec: SpecFile) -> Answer:
 
 
 def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
-    """Return what is proved of gains that were chosen by it, in SI units."""
+    """Return the proved facts of gains that a proof has chosen, in SI units."""
     from nrs_design.certificates.goals import decay_rate
 
     rate = decay_rate(found.result.certificate)
@@ -106,7 +106,7 @@ def _declared(found: CertifiedOptimum) -> list[int] | None:
 
 
 def _print_certified(shown: Optimum, found: CertifiedOptimum) -> None:
-    """Print what a proof takes for granted by which gains were chosen, and what it costs."""
+    """Print assumptions and cost of the proof that has chosen the gains."""
     print_granted(found.result)
     if shown.analysis.impedance:
         more = max(found.cost - found.free_cost, 0.0)
@@ -201,7 +201,7 @@ def _worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
 
 
 def _print_basis(items: Sequence[ImpedanceAnalysis]) -> None:
-    """Print which margins are proved of all controllers, and what the others are."""
+    """Print which margins are proved for all controllers, and the basis of the others."""
     from nrs_design.api.optimum import meanings
     from nrs_design.design.measures import MARGINS
 

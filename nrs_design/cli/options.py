@@ -24,7 +24,7 @@ def read_work(text: str) -> float:
 
 
 def seconds(low: float = 0.0, high: float = float("inf")) -> Callable[[str], float]:
-    """Return what reads a time for an option, ``0.001`` or ``1 ms``, between two times in s.
+    """Return a reader of times, ``0.001`` or ``1 ms``, between two bounds in s.
 
     It raises `typer.BadParameter` on anything else.
     """

@@ -20,7 +20,7 @@ from typing import Any, TextIO
 from nrs_design.printable import json_text, printable
 
 _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
-# Seconds between the steps that are told where there is no spinner.
+# Seconds between two progress lines on a stream without a spinner.
 SILENCE = 10.0
 # Columns of a line where there is no terminal, and COLUMNS does not say otherwise.
 WIDTH = 100
@@ -59,7 +59,7 @@ def wants_details() -> bool:
 
 
 def is_quiet() -> bool:
-    """Whether nothing but errors is wanted beside the result."""
+    """Whether --quiet silences all but errors and the result."""
     return _quiet.get()
 
 
@@ -79,13 +79,13 @@ def say(line: str = "", *, verdict: str = "", hanging: int = 2) -> None:
 
 
 def detail(line: str) -> None:
-    """Print one line of the result that only --verbose asks for."""
+    """Print one line of the result under --verbose."""
     if wants_details():
         say(line)
 
 
 def say_failure(line: str, status: str) -> None:
-    """Print one line about what is not fulfilled, --quiet or not; its status is coloured."""
+    """Print one line about a missed obligation, also under --quiet, with a coloured status."""
     text, colour = wrapped(printable(line), sys.stdout), COLOURS.get(status, "red")
     print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
 
@@ -102,7 +102,7 @@ def insist(line: str) -> None:
 
 
 def painted(text: str, colour: str, stream: TextIO) -> str:
-    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR)."""
+    """Colour a text if the stream is a terminal, unless the user has set NO_COLOR."""
     dull = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"
 

@@ -1,4 +1,4 @@
-"""What ``nrs-design simulate`` does: scenarios, each run once, or an adversary; files of runs."""
+"""Runs of ``nrs-design simulate``: all scenarios once, or an adversary; their files."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def _write_runs(
 
 
 def _print_briefly(runs: Simulation) -> None:
-    """Print a row for each run, and what went wrong in one."""
+    """Print a row for each run, and the faults of each run."""
     from nrs_design.axis import current
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up
@@ -160,7 +160,7 @@ def _print_briefly(runs: Simulation) -> None:
 
 
 def _print(one: ScenarioRun) -> None:
-    """Print the metrics of a run, bounds beside what they bound."""
+    """Print the metrics of a run with their certified bounds."""
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up, metric_rows
 

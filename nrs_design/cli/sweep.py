@@ -39,9 +39,9 @@ SWEPT = (
     "robot balance",
     "robot correction",
 )
-# What a terminal shows of rows, columns and messages; --csv and --json hold them all.
+# Largest numbers of rows, columns and messages on a terminal; --csv and --json hold all.
 MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES = 200, 6, 5
-# What an answer without a verdict is called, by its exit code.
+# Words for answers without a verdict, by exit code.
 WORDS = {
     exit_codes.PROVED: "met",
     exit_codes.REFUTED: "missed",
@@ -159,7 +159,7 @@ def _points(job: Job, jobs: int) -> list[PointAnswer]:
 
 @dataclass(frozen=True, slots=True)
 class _Swept:
-    """Answers of a sweep, the same for any number of processes."""
+    """Answers of a sweep; the number of processes does not change them."""
 
     job: Job
     points: Sequence[PointAnswer]
@@ -202,7 +202,7 @@ class _Swept:
         """Print what was set, how it ended, and some facts; by default those that differ."""
         from nrs_design.sweeps.table import cell_text, telling
 
-        # How it ended has a column of its own.
+        # The column `answer` shows the verdict.
         names = wanted or [name for name in telling(self.rows) if name != "verdict"]
         names, more = (names, []) if wanted else (names[:MOST_COLUMNS], names[MOST_COLUMNS:])
         columns = [f"{f.path}\n{f.unit}" if f.unit else f.path for f in self.job.grid.fields]
@@ -234,7 +234,7 @@ class _Swept:
         ]
 
     def _messages(self) -> Iterator[str]:
-        """Yield what is wrong, with the values of the first point of which it is said."""
+        """Yield each error message once, with the values of its first point."""
         paths = [field.path for field in self.job.grid.fields]
         said = {_message(point): point for point in reversed(self.points) if point.error}
         for message, point in reversed(said.items()):

@@ -19,7 +19,7 @@ from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 from nrs_design.sweeps.grid import Grid
 
-# Facts that no two runs have in common, that are about other specs, or advice about the file.
+# Facts that differ from run to run, concern other specs, or give advice about the file.
 LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps", "rho"})
 
 
@@ -29,18 +29,18 @@ class Job:
 
     spec: Path  # The file, or an axis of one
     grid: Grid
-    command: tuple[str, ...]  # Its words, such as ``("robot", "dynamics")``
-    options: tuple[str, ...]  # As they are typed
+    command: tuple[str, ...]  # Words of the command, such as ``("robot", "dynamics")``
+    options: tuple[str, ...]  # Options as typed
 
 
 @dataclass(frozen=True, slots=True)
 class PointAnswer:
     """Answer of a command at one point."""
 
-    values: tuple[str, ...]  # Of the fields, in their order
+    values: tuple[str, ...]  # Values of the fields, in the order of the grid
     code: int  # Exit code of the command
     result: Mapping[str, Any] | None = None  # The JSON document, without times and places of files
-    error: Mapping[str, Any] | None = None  # What is wrong, if that kept it from an answer
+    error: Mapping[str, Any] | None = None  # Error of a point without a result
 
 
 def answer_point(job: Job, values: tuple[str, ...]) -> PointAnswer:
@@ -89,7 +89,7 @@ def program_of(command: str) -> Any:
 
 
 def _lasting(document: Any) -> Any:
-    """Return a document without what is not the same in every run."""
+    """Return a document without the facts in `LEFT_OUT`."""
     if isinstance(document, dict):
         return {key: _lasting(value) for key, value in document.items() if key not in LEFT_OUT}
     return list(map(_lasting, document)) if isinstance(document, list) else document

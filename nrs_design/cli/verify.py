@@ -87,7 +87,7 @@ def verify(
         if checked is None:
             say(f"REJECTED: {outcome.fault}", verdict="rejected")
             return
-        # What was deployed comes first: a proof of other numbers is no good news.
+        # The deployed files come first: a proof of other numbers is no good news.
         if deployed is not None and found is not None:
             _print_deployed(deployed, found)
         if not brief:
@@ -107,7 +107,7 @@ _NEXT = {
 def _deployed(
     deployed: Path | None, loaded: LoadedSpec | None, checked: Certificate | None
 ) -> DeployedFiles | None:
-    """Compare what was deployed with a certificate that holds; None if there is nothing to do."""
+    """Compare deployed files with a valid certificate; None without files or certificate."""
     if deployed is None or loaded is None or checked is None:
         return None
     from nrs_design.exporters.deployed import compare_deployed

@@ -1,4 +1,4 @@
-"""A design and what is proved of it, put together to an export record."""
+"""Export record of a design and its proof."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def build_unproved(
 
 
 def _contents(design: ControllerDesign, spec: InteractionDesignSpec) -> dict[str, Any]:
-    """Return what ships, whatever is known of it."""
+    """Return the fields of a record that need no proof."""
     idle, low_pass = spec.idle_states, design.sensor.filter
     return {
         "package": Package(version=__version__),

@@ -1,4 +1,4 @@
-"""Whether what was deployed is what is exported with a certificate: bytes against bytes."""
+"""Comparison of deployed files with the export of a certificate, byte for byte."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LARGEST_BYTES = 2**22
 _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
 # The law and its monitor, not the self-test, which a robot may do without.
 _LAW = re.compile(r"(?<!_test)\.[hc]$")
-# How much of a line is shown.
+# Characters of a line that a message shows.
 _SHOWN = 100
 
 
@@ -67,7 +67,7 @@ def compare_deployed(
             "it was exported with",
         )
     export = _export(spec, certificate, place)
-    # A folder has the law itself, whatever else it has.
+    # A folder must hold the law itself.
     there = {formats[file.name] for file in known} | ({"c"} if whole else set())
     exported = {
         f"{spec.name}{end}": content

@@ -27,11 +27,11 @@ class Export:
     # Verdict on the purpose of the files. Rejected: the given certificate does not hold, or does
     # not cover the design.
     verdict: str
-    record: ExportRecord | None  # Of a proved design, or of an unproved one on request
+    record: ExportRecord | None  # Record of a proved design or, on request, of an unproved one
     certificate: Certificate | None  # The proof of the record, or what refutes it
     reason: str = ""  # Reason without a proof; else empty
     design: ControllerDesign | None = None  # The gains of the record
-    spec: InteractionDesignSpec | None = None  # What the record is of
+    spec: InteractionDesignSpec | None = None  # Spec of the record
     designed: Designed | None = None  # The plant and the gains of a proved design
 
     @property
@@ -159,7 +159,7 @@ def _proved(designed: Designed, certificate: Certificate) -> Export:
 
 
 def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:
-    """Return when a processor runs the law, in s: as the spec says, or as is asked for."""
+    """Return the sample time of the spec, or the requested one, in s."""
     said = None if spec.sampling is None else spec.sampling.period.exact
     if asked is not None and said is not None and asked != said:
         raise DesignError(

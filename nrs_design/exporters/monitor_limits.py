@@ -41,16 +41,16 @@ class MonitorLimits:
 
     period: Fraction  # Sample time in s
     torque: Fraction  # Largest torque in N m
-    command: Fraction | None  # Where the command saturates; None where the spec does not say
+    command: Fraction | None  # Saturation limit; None without one in the spec
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # Bounds on torque and angle; None without them in the spec
     # Region of decay with a saturating command; None without a proof of one.
     region: MonitoredRegion | None
-    # How far the joint moves, at the limit of its velocity, between two torques that are read.
+    # Travel of the joint between two torque readings, at the velocity limit.
     travel: Fraction
-    left_out: tuple[str, ...]  # What is not monitored, and why
+    left_out: tuple[str, ...]  # Unmonitored effects, with reasons
 
 
 def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
@@ -135,7 +135,7 @@ class MonitoredRegion:
     stiffness: tuple[Fraction, Fraction]  # The least and the largest, N m/rad
     ways: tuple[Fraction, Fraction]  # The least and the largest a, in 1/s
     gains: tuple[Fraction, Fraction]  # The least and the largest Km
-    samples: int  # How many angles before the present one are needed
+    samples: int  # Number of earlier angles that the test needs
 
 
 def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:

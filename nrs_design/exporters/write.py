@@ -15,12 +15,12 @@ from nrs_design.ownership import check_name, write_certificate
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Export
 
-# Of a file, such as .txt or .h5; a version of a folder, such as .2, is not one.
+# Ending of a file, such as .txt or .h5, but no version of a folder, such as .2.
 _ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
 
 
 def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
-    """Return where each file of a format goes in a folder, by its ending.
+    """Return the path of each file of a format in a folder, by its ending.
 
     Where the format has one file only, `out` may be that file. An `OutputError` if a file seems to
     be meant that is none of this format.

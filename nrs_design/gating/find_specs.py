@@ -45,7 +45,7 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
-    """List the hidden folders and the links to folders below folders, which nobody looks into."""
+    """List hidden folders, and links to folders, below the given folders."""
     return tuple(
         sorted(
             Path(folder, name)
@@ -73,7 +73,7 @@ def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 def axes_or_whole(spec: Path) -> tuple[Path, ...]:
-    """Return the axes of a spec with several, or the spec; what is wrong shows where it is read."""
+    """Return the axes of a spec with several axes; else, or of a wrong file, the spec itself."""
     try:
         return axes_at(spec)
     except SpecError:

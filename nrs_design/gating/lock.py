@@ -1,4 +1,4 @@
-"""``nrs.lock``: which specs were examined, and how every obligation that needs a design ended."""
+"""``nrs.lock``: examined specs, and the status of each obligation that needs a design."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
 MAX_SPECS = 10_000
-# What --locked decides itself; every other obligation is locked as it ended.
+# Rules that --locked decides again; the status of every other obligation is locked.
 DECIDED_AGAIN = frozenset(
     {
         rules.SPEC,
@@ -82,7 +82,7 @@ class LockedGoal(_Frozen):
 
     rule: str
     subject: str
-    # What no exact check decides is never proved or refuted; see `Status`.
+    # An exact check proves or refutes, and is made again; see `Status`.
     status: Literal["met", "inconclusive", "missed", "error"]
     message: str
 
@@ -98,7 +98,7 @@ class LockedRemark(_Frozen):
 
     message: str
     at: list[str]  # Keys that lead to its place in the spec
-    # As of a `Caution`, three digits of it: the last ones are of a processor.
+    # Three digits of `Caution.beyond`: further digits differ between processors.
     beyond: float = Field(gt=0, allow_inf_nan=False)
 
 
@@ -200,5 +200,5 @@ def read_lock(file: Path) -> Lock:
 
 
 def relative_to_lock(path: Path, lock: Path) -> str:
-    """Return a path as it stands in a lock file, with forward slashes."""
+    """Return a path relative to a lock file, with forward slashes."""
     return Path(os.path.relpath(path, lock.parent)).as_posix()

@@ -54,7 +54,7 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         present = (spec for spec in outcome.specs if is_there(spec.path))
         examined = {relative_to_lock(spec.path, file): spec for spec in present}
         locked = read_lock_if_any(file).specs
-        # Without a verdict now, what was locked of an unchanged spec still holds.
+        # The entry of an unchanged spec still holds if the spec has no verdict now.
         still = {(p, s.sha256) for p, s in examined.items() if s.verdict is None}
         old = [e for e in locked if e.path not in examined or (e.path, e.sha256) in still]
         gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
@@ -101,9 +101,9 @@ def _check_kept(spec: SpecOutcome) -> None:
     )
 
 
-# A value that has no bound is so many times over its limit.
+# Ratio of an unbounded value to its limit.
 _MOST = 1e6
-# What is shown by no certificate is taken from a lock file on trust, so it is not proved there.
+# A lock file proves nothing: a status without a certificate is locked as met or missed.
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
 
 

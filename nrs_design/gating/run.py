@@ -44,11 +44,11 @@ _Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Files:
-    """Where the files of a spec are: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
+    """Places of the files of a spec: ``NAME.cert.json`` and, on request, ``NAME.html``."""
 
     folder: Path  # For all of them
-    html: bool = True  # Whether reports are asked for, of what is new or not fulfilled
-    every_page: bool = False  # Whether they are of all specs
+    html: bool = True  # Write reports of new or broken specs
+    every_page: bool = False  # Write reports of all specs
     # The certificate that is locked for a spec, by the absolute path of the spec.
     locked: Mapping[Path, Recorded] = field(default_factory=dict)
 
@@ -111,7 +111,7 @@ def _examine_safely(
     loaded: LoadedSpec,
     progress: Progress,
 ) -> SpecOutcome:
-    """Return what is found about a spec, whatever goes wrong with it."""
+    """Return the outcome of a spec; every error becomes an outcome."""
     namesake, name = namesakes.get(loaded.path), loaded.spec.name
     try:
         if namesake is not None:
@@ -165,7 +165,7 @@ def _examine(
     if files.html:
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
-    # Who sets how far a search goes wants one.
+    # Options that limit the search request a search.
     wanted = overrides not in (None, Overrides())
     kept = None if wanted else run_kept(loaded, files.recorded_for(loaded), progress)
     result = kept or run_certification(loaded, limits=limits, progress=progress)
@@ -260,7 +260,7 @@ def _is_of(page: Path, certificate: Certificate | None, origin: str) -> bool:
 
 
 def _seal(body: str, origin: str) -> str:
-    """Return the end of a page: what shows that nobody has changed it, or moved its spec."""
+    """Return the end of a page, which is another if the page changes or its spec moves."""
     return f"{hashlib.sha256(f'{__version__}{origin}{body}'.encode()).hexdigest()} -->\n"
 
 

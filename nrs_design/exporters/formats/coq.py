@@ -28,7 +28,7 @@ FORMAT = Format(
     alone=True,
 )
 _LIBRARY = Path(__file__).parent.parent / "proof_assistant"
-# What no statement of the library covers of a claim.
+# Parts of a claim outside every theorem of the library.
 _LEFT_OUT = (
     "that these modes are those of the robot: what is taken for granted, below",
     "that they come from the spec: `nrs-design verify CERTIFICATE SPEC` assembles them again",

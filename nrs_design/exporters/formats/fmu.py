@@ -86,7 +86,7 @@ def remarks(files: Mapping[str, bytes]) -> tuple[str, ...]:
 class Variable:
     """One variable that is a real number."""
 
-    # As the description calls it, and its number.
+    # Name and number in the description.
     name: str
     reference: int
     # Member of the model in C.
@@ -148,7 +148,7 @@ def packed(entries: Mapping[str, bytes]) -> bytes:
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for name, content in entries.items():
             info = zipfile.ZipInfo(name, _DATE)
-            # As a system writes it that Python does not run on may differ.
+            # The default differs between operating systems.
             info.create_system = 3
             info.external_attr = 0o644 << 16
             archive.writestr(info, content)
@@ -192,7 +192,7 @@ def description(program: Program) -> str:
 
 
 def _page(program: Program, binary: str) -> str:
-    """Return the documentation as HTML, with what is compiled, in words."""
+    """Return the documentation as HTML; `binary` describes the compiled part."""
     proof, modes = program.record.proof, program.law.modes
     sections = (
         ("What this is", (*program.about, binary)),

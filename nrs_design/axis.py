@@ -114,10 +114,7 @@ def labelled(text: str) -> str:
 
 
 def take(axis: object) -> Token[AxisType]:
-    """Take an axis for the `current` one until `about`, within which this is called, ends.
-
-    What is no axis is taken for one that turns.
-    """
+    """Make an axis the `current` one, until an enclosing `about` ends; others count as rotary."""
     return _CURRENT.set(AxisType(str(axis)) if axis in [*AxisType] else AxisType.ROTARY)
 
 

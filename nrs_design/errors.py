@@ -158,5 +158,8 @@ class ClockError(NrsDesignError):
     rule = "NRS008"
 
 
+DISAGREE = "the integer check and flint disagree about the same certificate"
+
+
 class InternalError(Exception):
     """Two independent computations disagree: a defect of this program, never a verdict."""

@@ -21,7 +21,7 @@ from nrs_design.certificates.certificate import (
     to_document,
 )
 from nrs_design.certificates.second_opinion import agrees
-from nrs_design.errors import CertificateError, InternalError, NrsDesignError
+from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
 from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_system, read_text
@@ -187,7 +187,7 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     system, statements = certificate.system, certificate.statements
     pairs = zip(statements, verification.forms, strict=True)
     if not all(agrees(system, item, forms) for item, forms in pairs):
-        raise InternalError("the integer check and flint disagree about the same certificate")
+        raise InternalError(DISAGREE)
     return Verification(certificate, None)
 
 

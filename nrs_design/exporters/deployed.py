@@ -80,8 +80,14 @@ def compare_deployed(
         told += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
     # The certificate is read, not compared.
     aside = {*known, place / f"{spec.name}.cert.json"}
-    others = tuple(file.relative_to(place) for file in files if file not in aside)
-    return DeployedFiles((*known,), (*told,), others)
+    others = dict.fromkeys(_visible(file.relative_to(place)) for file in files if file not in aside)
+    return DeployedFiles((*known,), (*told,), (*others,))
+
+
+def _visible(file: Path) -> Path:
+    """Return a path up to its first hidden folder, which stands for all files in it."""
+    hidden = (k for k, part in enumerate(file.parts[:-1], 1) if part.startswith("."))
+    return Path(*file.parts[: next(hidden, None)])
 
 
 def _export(spec: InteractionDesignSpec, certificate: Certificate, place: Path) -> Export:

@@ -68,7 +68,14 @@ def export_design(
     the proof must be about the sampled loop.
     """
     spec = interaction_of(loaded, "has no gains to export")
-    _check_one_period(loaded, spec)
+    if spec.sampling is not None and spec.sampling.round > 1:
+        raise DesignError(
+            "an export has one period for all operations of its law, and the proof with "
+            "outer_period runs some of them at another",
+            path=loaded.path,
+            remedy="leave outer_period out to export; the report has the gains",
+            at=("sampling", "outer_period"),
+        )
     period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
         _certified_here(loaded, recorded, progress)
@@ -101,17 +108,6 @@ def export_proof(
     verdict = str(result.certification.verdict)
     reason = "" if verdict == "proved" else f"nothing is proved of the matrices: {verdict}"
     return Export(verdict, None, result.certificate, reason)
-
-
-def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
-    if spec.sampling is not None and spec.sampling.round > 1:
-        raise DesignError(
-            "an export has one period for all operations of its law, and the proof with "
-            "outer_period runs some of them at another",
-            path=loaded.path,
-            remedy="leave outer_period out to export; the report has the gains",
-            at=("sampling", "outer_period"),
-        )
 
 
 def _kept_or_anew(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Result:

@@ -76,8 +76,11 @@ def compare_with_base(
     outcome: GateOutcome, paths: Sequence[Path], base: Path, lock: Path
 ) -> GateOutcome:
     """Add a broken obligation for each weaker requirement, and list all other changes."""
-    there = find_specs_if_any(base_paths(paths, base))
-    entries = _locked(base, lock)
+    there = _specs_if_any(base_paths(paths, base))
+    # By path from the root of the base.
+    folder = Path(os.path.relpath(lock)).parent
+    locked = read_lock_if_any(base / os.path.relpath(lock)).specs
+    entries = {os.path.normpath(folder / entry.path): entry for entry in locked}
     here = {Path(os.path.relpath(spec.path)): spec for spec in outcome.specs}
     found: dict[Path, list[Change]] = {}
     gone: list[SpecOutcome] = []
@@ -85,7 +88,8 @@ def compare_with_base(
         name = Path(os.path.relpath(path, base))
         now = here.get(name) or _moved(path, there, base, outcome)
         if now is None:
-            gone.append(_gone(name))
+            lost = Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE)
+            gone.append(SpecOutcome(name, (lost,)))
             continue
         entry = entries.get(os.path.normpath(name))
         if os.path.lexists(now.path) or is_there(now.path):
@@ -104,7 +108,7 @@ def compare_with_base(
     return replace(outcome, specs=(*specs, *gone), changes=BaseChanges(base, weaker, others))
 
 
-def find_specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
+def _specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
     """List the specs of files and folders; a folder may have none."""
     found: list[Path] = []
     for path in paths:
@@ -115,14 +119,6 @@ def find_specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
             if type(error) is not NrsDesignError:
                 raise
     return tuple(dict.fromkeys(found))
-
-
-def _locked(base: Path, lock: Path) -> dict[str, LockedSpec]:
-    """Return what the base has locked, by path from its root."""
-    file = base / os.path.relpath(lock)
-    folder = Path(os.path.relpath(lock)).parent
-    entries = read_lock_if_any(file).specs
-    return {os.path.normpath(folder / entry.path): entry for entry in entries}
 
 
 def _moved(
@@ -143,10 +139,6 @@ def _name_of(path: Path) -> str | None:
         return read_spec(path).spec.name
     except NrsDesignError:
         return None
-
-
-def _gone(name: Path) -> SpecOutcome:
-    return SpecOutcome(name, (Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE),))
 
 
 def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:

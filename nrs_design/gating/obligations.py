@@ -191,14 +191,14 @@ class GateOutcome:
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
     """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
     if isinstance(error, NrsDesignError):
-        obligation = of_error(path, error)
+        obligation = _of_error(path, error)
     else:
         message = f"{type(error).__name__}: {error}"
         obligation = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, _one_line(message))
     return SpecOutcome(path, (obligation,), sha256)
 
 
-def of_error(path: Path, error: NrsDesignError) -> Obligation:
+def _of_error(path: Path, error: NrsDesignError) -> Obligation:
     """Return the obligation of a spec that ended in an error, with the place and the remedy."""
     elsewhere = error.path is not None and error.path != path
     message = f"{error.location}: {error.message}" if elsewhere else error.message

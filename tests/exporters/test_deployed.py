@@ -56,14 +56,15 @@ def test_a_folder_as_exported(folder, compared):
     (folder / "soft-tissue.cert.json").write_text("{}")
     (folder / "main.c").write_text("int main(void) { return 0; }")
     # A compiler takes this one, too, where its folder is named first.
-    (folder / "old").mkdir()
-    (folder / "old/soft-tissue.h").touch()
+    for name in ("old/soft-tissue.h", ".git/objects/a", ".git/objects/b"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
     found = compared()
     assert found.differences == ()
     assert {file.name for file in found.compared} == {
         f"soft-tissue{ending}" for name in EXECUTABLE for ending in format_of(name).files
     }
-    assert found.left_out == "how it is compiled, main.c, old/soft-tissue.h"
+    assert found.left_out == "how it is compiled, .git, main.c, old/soft-tissue.h"
 
 
 @pytest.mark.parametrize("ending", [".h", "_test.c", ".fmu"])

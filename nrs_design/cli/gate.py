@@ -205,10 +205,7 @@ def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
         f"not examined, for want of a name that ends in {SUFFIXES[0]}": find_misnamed(paths),
     }.items():
         if found:
-            outcome = outcome.with_note(f"{why}: {_listed(found)}")
+            listed = ", ".join(path.as_posix() for path in found[:SHOWN])
+            more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+            outcome = outcome.with_note(f"{why}: {listed}{more}")
     return outcome
-
-
-def _listed(paths: tuple[Path, ...]) -> str:
-    more = f" and {len(paths) - SHOWN} more" if len(paths) > SHOWN else ""
-    return ", ".join(path.as_posix() for path in paths[:SHOWN]) + more

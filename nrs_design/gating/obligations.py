@@ -190,24 +190,19 @@ class GateOutcome:
 
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
     """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
-    if isinstance(error, NrsDesignError):
-        obligation = _of_error(path, error)
-    else:
-        message = f"{type(error).__name__}: {error}"
-        obligation = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, _one_line(message))
-    return SpecOutcome(path, (obligation,), sha256)
-
-
-def _of_error(path: Path, error: NrsDesignError) -> Obligation:
-    """Return the obligation of a spec that ended in an error, with the place and the remedy."""
+    if not isinstance(error, NrsDesignError):
+        message = _one_line(f"{type(error).__name__}: {error}")
+        defect = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, message)
+        return SpecOutcome(path, (defect,), sha256)
     elsewhere = error.path is not None and error.path != path
     message = f"{error.location}: {error.message}" if elsewhere else error.message
     if error.remedy:
         message += f" ({error.remedy})"
-    message += error.more
+    message = _one_line(message + error.more)
     status = Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR
     place = (None, None) if elsewhere else (error.line, error.column)
-    return Obligation(RULES[error.rule], path, "spec", status, _one_line(message), *place)
+    found = Obligation(RULES[error.rule], path, "spec", status, message, *place)
+    return SpecOutcome(path, (found,), sha256)
 
 
 def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:

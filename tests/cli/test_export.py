@@ -124,21 +124,6 @@ def sampled(export, sampled_certificate):
     return sampled_spec(), "mine.json"
 
 
-@pytest.mark.slow
-def test_programs_with_a_proof_of_the_sampled_loop(export):
-    spec = sampled_spec()
-    done = export(spec, "--out", "out", "--format", "c", code=0)
-    assert "every-2-ms: PROVED" in done.stdout
-    proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
-    before = contents()
-    export(*proved, "--format", "c", code=0)
-    assert contents() == before
-    Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
-    before = contents()
-    export(*proved, "--format", "c", code=2)
-    assert contents() == before
-
-
 @pytest.mark.parametrize("name", ["c", "json", "mat", "fmu"])
 def test_the_export_of_another_spec_is_not_overwritten(export, sampled, name):
     spec, certificate = sampled

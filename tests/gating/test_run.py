@@ -10,7 +10,7 @@ from nrs_design.gating.run import Files, run_gate
 from tests.pipeline.test_blocked import PAIR
 from tests.support import write_spec
 
-from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE, gate_of
+from .conftest import BROKEN, STABLE, UNSTABLE, gate_of
 
 
 @pytest.fixture
@@ -93,19 +93,6 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
     outcome = examine(STABLE)
     (broken,) = outcome.broken
     assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)
-
-
-def test_what_is_doubtful_breaks_nothing(examine):
-    hand = "environments:\n  hand: {model: elastic, stiffness: 60 N*m/rad}\n"
-    text = SOFT_TISSUE.read_text().replace("environments:\n", hand)
-    outcome = examine(text)
-    assert outcome.severity == 0
-    cautions = outcome.specs[0].cautions
-    messages = [item.message for item in cautions]
-    (place,) = (k for k, text in enumerate(messages) if "hand is touched by no" in text)
-    assert text.split("\n")[cautions[place].line - 1].startswith("  hand:")
-    # What is furthest beyond its limit leads.
-    assert messages[0].startswith("withdrawal: sensitivity peak Ms 3.753")
 
 
 @pytest.mark.slow

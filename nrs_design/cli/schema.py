@@ -11,12 +11,14 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note
 
+# Schemas that the command prints.
+Described = Literal["spec", "export"]
+
 
 @command("schema", has_json=False)
 def schema(
     of: Annotated[
-        Literal["spec", "export"],
-        typer.Option(help="Of spec files (draft-07), or of export records (2020-12)."),
+        Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
     ] = "spec",
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
 ) -> Answer:

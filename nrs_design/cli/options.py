@@ -67,8 +67,6 @@ def refuse_both(*pairs: tuple[str, str, object], reason: str = "") -> None:
 
 
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
-
-
 MaxDegree = Annotated[
     int | None,
     typer.Option(

@@ -93,9 +93,8 @@ def verify(
         if not brief:
             _print(checked, None if loaded is None else loaded.spec)
 
-    return Answer(
-        facts, show, exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED), loud=rejected
-    )
+    code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
+    return Answer(facts, show, code, loud=rejected)
 
 
 _NEXT = {

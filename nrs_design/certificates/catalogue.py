@@ -111,6 +111,14 @@ def bound_of(assumption: Assumption) -> str:
     return _rendered(assumption, kind.bounds.get(_name(assumption), kind.within))
 
 
+def sentence_with_bound(assumption: Assumption) -> str:
+    """Return the sentence of an assumption and its bound, even of a stranger's certificate."""
+    try:
+        return f"{sentence(assumption)} (within: {bound_of(assumption)})"
+    except (LookupError, ValueError):
+        return f"{assumption}, which this version does not know"
+
+
 def sentences(assumptions: Iterable[Assumption]) -> tuple[str, ...]:
     """Return the sentences of assumptions."""
     return tuple(map(sentence, assumptions))

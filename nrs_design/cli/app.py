@@ -26,7 +26,7 @@ GROUPS = {
     "Start": ("init", "identify", "check", "explain", "schema"),
     "Design": ("optimize", "tune", "mode-logic", "simulate"),
     "Prove": ("certify-switching", "verify", "sweep"),
-    "Ship": ("report", "gate", "export", "audit"),
+    "Ship": ("report", "gate", "export", "diff", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),
 }
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)

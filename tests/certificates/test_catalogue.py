@@ -15,6 +15,7 @@ from nrs_design.certificates.catalogue import (
     kinds,
     omitted,
     sentence,
+    sentence_with_bound,
 )
 from nrs_design.controllers.laws import LAWS
 from nrs_design.loop.assemble import assemble, assemble_matrices
@@ -135,10 +136,14 @@ def test_an_assumption_has_its_words_in_the_catalogue():
         Assumption.create("at-a-switch.resets", switches=("a",), legs=("a", "b")),
     ],
 )
-def test_what_a_strangers_certificate_says_has_no_sentence(unknown):
+def test_what_a_strangers_certificate_says_is_shown_as_it_is(unknown):
     """Of this version, an id that the catalogue lacks is a defect."""
     with pytest.raises((LookupError, ValueError)):
         sentence(unknown)
+    said = sentence_with_bound(unknown)
+    assert said.startswith(f"{unknown.id} (")
+    assert "legs: a, b" in said
+    assert "this version does not know" in said
 
 
 def test_sentences_of_laws_are_about_one_law_each():

@@ -15,7 +15,7 @@ from functools import cache
 
 from nrs_design.errors import InternalError
 
-# What the driver of a motor takes.
+# Units of motor commands.
 COMMAND_UNITS = ("rpm", "V", "A", "counts")
 COMMON_UNITS = ("", "1", "s", "1/s", "J", "Hz", "%", "N", "N/m", "ms", "samples", "decades", "W")
 # Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
@@ -49,9 +49,7 @@ _SLIDING: Mapping[str, str] = {
     },
     "N*m*s/rad/(N*m)": "s/m",
 }
-# Of states of an axis that slides.
-_OF_STATES: Mapping[str, str] = {"m": "rad", "m/s": "rad/s", "N": "N*m"}
-# How a unit is written: in records, in tables of a terminal, and in pages and figures.
+# Product and square in records, in tables of a terminal, and in pages and figures.
 _STYLES = (("*", "^2"), (" ", "^2"), ("\N{MIDDLE DOT}", "\N{SUPERSCRIPT TWO}"))
 
 
@@ -62,7 +60,7 @@ class AxisType(StrEnum):
     PRISMATIC = "prismatic"
 
     def unit(self, turning: str) -> str:
-        """Return the unit of a quantity of the axis, for that of one that turns."""
+        """Return the unit of a quantity on this axis, given the unit on a rotary axis."""
         if turning not in _every():
             raise InternalError(f"{turning!r} is no unit of an axis")
         return turning if self is AxisType.ROTARY else _every()[turning]
@@ -72,13 +70,6 @@ class AxisType(StrEnum):
         name, opened, rest = text.partition(" [")
         said, closed, more = rest.partition("]")
         return f"{name}{opened}{self.unit(said)}{closed}{more}" if opened else text
-
-    def turning(self, text: str) -> str:
-        """Return what a name with its unit, such as ``delta [m]``, is on an axis that turns."""
-        name, opened, rest = text.partition(" [")
-        if self is AxisType.ROTARY or not opened:
-            return text
-        return f"{name}{opened}{_OF_STATES[rest[:-1]]}]"
 
     @property
     def fine(self) -> float:
@@ -113,7 +104,7 @@ def current() -> AxisType:
 
 
 def unit(turning: str) -> str:
-    """Return the unit on the `current` axis of what has this unit on one that turns."""
+    """Return the unit on the `current` axis, given the unit on a rotary axis."""
     return current().unit(turning)
 
 
@@ -123,16 +114,13 @@ def labelled(text: str) -> str:
 
 
 def take(axis: object) -> Token[AxisType]:
-    """Take an axis for the `current` one until `about`, within which this is called, ends.
-
-    What is no axis is taken for one that turns.
-    """
+    """Make an axis the `current` one, until an enclosing `about` ends; others count as rotary."""
     return _CURRENT.set(AxisType(str(axis)) if axis in [*AxisType] else AxisType.ROTARY)
 
 
 @contextmanager
 def about(axis: object) -> Iterator[None]:
-    """Take an axis for the `current` one; what is none is taken for one that turns."""
+    """Make an axis the `current` one; anything else stands for a rotary axis."""
     token = take(axis)
     try:
         yield

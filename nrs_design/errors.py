@@ -1,4 +1,4 @@
-"""Errors that carry what went wrong, where, and what to do about it."""
+"""Errors with message, place and remedy."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from typing import Self
 class Fault:
     """One thing that is wrong with a file."""
 
-    message: str  # What is wrong, and what was expected
+    message: str  # Error, and expected value
     # line, column: where, counted from 1, as far as it is known.
     line: int | None = None
     column: int | None = None
-    remedy: str | None = None  # What to do about it
+    remedy: str | None = None  # Advice
 
 
 class NrsDesignError(Exception):
@@ -60,7 +60,7 @@ class NrsDesignError(Exception):
 
     @property
     def more(self) -> str:
-        """How many faults there are beside the first, such as ``; 2 more faults in this file``."""
+        """Number of further faults, such as ``; 2 more faults in this file``."""
         count = len(self.faults) - 1
         return f"; {count} more fault{'s' * (count > 1)} in this file" if count else ""
 

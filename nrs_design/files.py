@@ -1,4 +1,4 @@
-"""What is a file, and what only looks like one: pipes and devices, on this system or another."""
+"""Regular files, in contrast to pipes and devices, on this system or another."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAX_JSON_VALUES = 1_000_000
 DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(10))]
 )
-# How pages begin, which are met beside specs and certificates of the same name.
+# First bytes of pages, which may lie beside specs and certificates of the same name.
 _PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
 
 

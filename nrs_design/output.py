@@ -1,4 +1,4 @@
-"""Writing results: whole or not at all, where they were asked for, and over nothing foreign."""
+"""Atomic writing of results, without overwriting foreign files."""
 
 from __future__ import annotations
 
@@ -13,17 +13,15 @@ from pathlib import Path
 from nrs_design.errors import OutputError
 from nrs_design.files import is_device_name
 
-# How the files begin that are replaced by new ones of their kind.
+# First bytes of our files, which new files of the same kind may replace.
 CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
 EXPORT = b'{\n  "schema": "nrs-design/export/'
 COQ = b"(* nrs-design proof for Coq"
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
 C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"
-C_MONITOR, C_MONITOR_HEADER = (
-    b"/* nrs-design C monitor\n",
-    b"/* nrs-design C header of a monitor\n",
-)
+C_MONITOR = b"/* nrs-design C monitor\n"
+C_MONITOR_HEADER = b"/* nrs-design C header of a monitor\n"
 CMAKE = b"# nrs-design CMake file\n"
 # The first entry of the archive, which is stored as it is, and always the same.
 FMU = (
@@ -42,9 +40,8 @@ RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
 )
 SWEEP = b"point,exit_code,message,"
-SWEEP_ANSWERS = b'{"schema": "nrs-design/answers/1"}'
 TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
-# Other programs write SARIF and JUnit files, too: ours say that they are.
+# Our SARIF and JUnit files name this program.
 GATE = re.compile(
     rb"spec +verdict +common quadratic +decay rate +modes +certificate\n"
     rb"|::(?:error|warning|notice) (?:[^\n]*,)?title=(?:NRS\d+|nrs-design)::"
@@ -54,7 +51,7 @@ GATE = re.compile(
     rb'|<\?xml version="1\.0" encoding="UTF-8"\?>\n<testsuites name="nrs-design" '
     rb"|### [^\n]{1,4} nrs-design: "
 )
-# What follows the first line of a figure that stands for itself.
+# Second line of a figure in its own file.
 SVG_MARK = "<!-- nrs-design figure -->\n"
 SVG = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{SVG_MARK}'.encode()
 # An entry of each image, which tells it from those of other programs.
@@ -62,10 +59,7 @@ MAKER = "nrs-design"
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
 )
-# How the names of pages end.
-PAGES = (".html", ".htm")
-
-# More than the longest of them that is no pattern, and than any file that a pattern is to tell.
+# Bytes to read: more than the longest fixed beginning, and than any file for a pattern.
 _LONGEST, _WHOLE = 256, 2**26
 
 Beginning = bytes | tuple[bytes, ...] | re.Pattern[bytes]
@@ -74,7 +68,7 @@ Output = tuple[Path, str | bytes, Beginning]
 
 def check_html(path: Path) -> None:
     """Refuse a name that is not one of a page in HTML."""
-    if path.suffix.lower() not in PAGES:
+    if path.suffix.lower() not in (".html", ".htm"):
         raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
 
@@ -88,7 +82,7 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
 
 
 def write_outputs(outputs: Collection[Output]) -> None:
-    """Write the files of one result: none where one of them is refused, or cannot be staged."""
+    """Write all files of one result, or none if one of them is refused or fails."""
     places = set[Path]()
     for path, _, replaces in outputs:
         check_place(path, replaces)
@@ -128,11 +122,11 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
         raise OutputError("names a device on Windows", path=path, remedy="name another file")
     with _told(path):
         _refuse_links(path)
-        check_replaceable(path, replaces)
+        _refuse_foreign(path, replaces)
         folder = next(folder for folder in path.parents if folder.exists())
         if not folder.is_dir():
             raise NotADirectoryError(ENOTDIR, os.strerror(ENOTDIR))
-        # A file is written beside the one that it replaces, so it is the folder that counts.
+        # The temporary file needs a writable folder.
         if not os.access(folder, os.W_OK | os.X_OK):
             raise PermissionError(EACCES, os.strerror(EACCES))
 
@@ -150,7 +144,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     except ImportError:
         yield
         return
-    # Made first: who locks the folder above would keep out nobody once this one is there.
+    # The folder must exist: a lock on its parent would not exclude later processes.
     _refuse_links(folder)
     with _told(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -191,7 +185,7 @@ def _refuse_links(path: Path) -> None:
             )
 
 
-def check_replaceable(path: Path, beginning: Beginning) -> None:
+def _refuse_foreign(path: Path, beginning: Beginning) -> None:
     """Refuse a place that holds something else than a file that begins in one of these ways."""
     if not path.exists():
         return

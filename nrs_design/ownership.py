@@ -1,4 +1,4 @@
-"""Whose the files in an output folder are: a spec never overwrites those of another.
+"""Owners of the files in an output folder: a spec never overwrites files of another spec.
 
 Files are named after the ``name:`` of their spec, and a copied spec has the same. Certificates and
 pages therefore say where their spec was, relative to themselves. This is no part of any claim: it
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
 
 REMEDY = "give this spec a `name` of its own, choose another place, or remove that file"
-# As exports of designs write it: in the lines of their header, as JSON, as a MAT-file.
+# Name of the spec in an export: in header lines, JSON or a MAT-file.
 _NAMED = re.compile(
     rb"\bspec: ([a-z0-9._-]+),[\s*#]+sha256[\s*#]+[0-9a-f]{64}"
     rb'|"spec": \{\s*"name": "([a-z0-9._-]+)"'
     rb"|\AMATLAB 5.0 MAT-file, nrs-design export of ([a-z0-9._-]+) "
 )
-# As the template of the page writes it, near its beginning.
+# Origin of the spec near the beginning of a page.
 _PAGE_ORIGIN = re.escape(PAGE) + rb'<meta name="spec" content="([^"]{1,4096})">'
 
 
@@ -92,7 +92,7 @@ def check_certificate(spec: Path, file: Path) -> None:
 
 
 def _refuse_other(spec: Path, origin: str, file: Path) -> None:
-    """Refuse if another spec owns a file; one that no longer exists owns nothing."""
+    """Refuse a file of another spec; a deleted spec owns nothing."""
     owner = file.parent / origin
     if os.path.isfile(file_of(owner)) and os.path.realpath(owner) != os.path.realpath(spec):
         raise OutputError(f"belongs to {os.path.relpath(owner)}", path=file, remedy=REMEDY)

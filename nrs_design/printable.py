@@ -10,9 +10,9 @@ from typing import Any
 _UNSEEN = (
     "\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef"
 )
-# What a line of a GitHub log begins with, or holds anywhere, to be taken for a command.
+# Beginning, or part, of a line that a GitHub log takes for a command.
 _COMMAND = re.compile(r"\A\s*:(?=:)|#(?=#\[)")
-# Of the characters that stand for bytes from 0x80 on (PEP 383).
+# First surrogate for a byte that is no text (PEP 383).
 _FIRST_BYTE = 0xDC80
 _STRANGE = re.compile(f"[{_UNSEEN}]")
 

@@ -1,4 +1,4 @@
-"""Starts every other program and worker: none imports or runs what lies in the working folder.
+"""Start of other programs and workers, which import and run nothing of the working folder.
 
 That may be a stranger's, as the checkout is that a gate judges.
 """
@@ -17,7 +17,7 @@ from nrs_design.errors import NrsDesignError
 P = TypeVar("P")
 T = TypeVar("T")
 
-# Python that is started, by whatever it is, then leaves the working folder out of `sys.path`.
+# Every Python process with this variable leaves the working folder out of `sys.path`.
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 
 
@@ -52,7 +52,7 @@ def map_in_processes(
     from multiprocessing import active_children, get_context
 
     # Workers start at any time until the last result is there.
-    before = dict(os.environ)
+    before, others = os.environ.copy(), active_children()
     os.environ |= SAFE_PATH
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin)
     try:
@@ -65,12 +65,14 @@ def map_in_processes(
             remedy="there may be too little memory for so many: take fewer --jobs",
         ) from None
     finally:
-        # Nobody waits for what was begun and is not wanted any more.
+        # Results of remaining workers are not needed.
         for worker in active_children():
-            worker.terminate()
+            if worker not in others:
+                worker.terminate()
         pool.shutdown(cancel_futures=True)
-        for name in SAFE_PATH.keys() - before.keys():
+        for name in os.environ.keys() - before.keys():
             del os.environ[name]
+        os.environ |= before
 
 
 def _begin() -> None:

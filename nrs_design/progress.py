@@ -1,4 +1,4 @@
-"""What a long computation is told to report its steps to."""
+"""Functions that take the progress of a long computation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The wings of the house: their commands, and how the core reaches what lies in them.
+"""Wings of the package: their commands, and access of the core to them.
 
 A wing is a folder of the package. It imports the core; the core never imports a wing, but asks for
 one here when it is needed. Without its folder, the rest works, and says what is missing.

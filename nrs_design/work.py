@@ -16,7 +16,7 @@ from time import monotonic
 from nrs_design.errors import ClockError
 
 GIGABYTE = 1e9
-# The fuse of a budget: so many seconds for each unit of work, and so many more.
+# Fuse of a budget: seconds for each unit of work, and a constant number of seconds.
 SECONDS_PER_UNIT, SECONDS_MORE = 10.0, 60.0
 
 
@@ -30,7 +30,7 @@ class Cost:
 
     work: float  # In units
     memory: float = 0.0  # In bytes
-    # What a solver adds with every step beyond the predicted number of them, in units.
+    # Work of each solver step beyond the predicted number of steps, in units.
     per_step: float = 0.0
 
 
@@ -91,7 +91,7 @@ class Allowance:
 
     @property
     def left(self) -> float:
-        """Work that is left; a part has no more than the whole."""
+        """Remaining work; a part has at most the work of the whole."""
         own = max(0.0, self.work - self.charged)
         return own if self._parent is None else min(own, self._parent.left)
 

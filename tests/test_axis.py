@@ -39,7 +39,6 @@ def test_states_carry_their_axis():
     assert SLIDE.named("vm [rad/s]") == "vm [m/s]"
     assert SLIDE.named("k limit [N·m/rad], worst") == "k limit [N/m], worst"
     assert SLIDE.named("xp2") == "xp2"
-    assert SLIDE.turning("delta [m]") == "delta [rad]"
     assert axis_with(["e [m]", "omega [m/s]"]) is SLIDE
     assert axis_with(["e [rad]", "F 1 before [N*m]"]) is AxisType.ROTARY
 

@@ -53,14 +53,6 @@ def test_one_that_fails_is_a_row_and_the_others_are_printed(play, capsys):
     assert play(last=lambda size: ()) == 0
 
 
-def test_a_result_is_printed_before_the_next_benchmark_runs(play, capsys):
-    def look(size):
-        assert "| work | result | aim | yes | 1 |" in capsys.readouterr().out
-        return ()
-
-    assert play(last=look) == 0
-
-
 def test_json_holds_failures_too(play, capsys):
     assert play("--json") == 1
     results = json.loads(capsys.readouterr().out)["results"]

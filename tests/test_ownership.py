@@ -60,12 +60,9 @@ def test_another_spec_may_not(folder, missing):
     assert "`name` of its own" in caught.value.remedy
 
 
-def test_other_names_and_places_are_free(folder):
+def test_other_names_and_places_are_free_and_a_spec_that_is_gone_owns_nothing(folder):
     check_owner(folder / "second.nrs.yaml", "other", folder / "reports")
     check_owner(folder / "second.nrs.yaml", "commuting", folder)
-
-
-def test_a_spec_that_is_gone_owns_nothing(folder):
     (folder / "specs/first.nrs.yaml").unlink()
     check_owner(folder / "second.nrs.yaml", "commuting", folder / "reports")
 
@@ -101,15 +98,13 @@ SHA = 64 * "a"
 def test_the_export_of_a_spec_of_another_name_stays(tmp_path, text):
     file = tmp_path / "x"
     check_name("mine", file)
+    # What names no spec is anyone's.
+    file.write_text("/* nrs-design C header\n */")
+    check_name("mine", file)
     file.write_text(text)
     check_name("mine", file)
     with pytest.raises(OutputError, match="was exported for the spec mine"):
         check_name("min", file)
-
-
-def test_a_file_that_names_no_spec_is_anyone_s(tmp_path):
-    (tmp_path / "x").write_text("/* nrs-design C header\n */")
-    check_name("mine", tmp_path / "x")
 
 
 def test_a_folder_is_no_certificate_of_another(folder):

@@ -51,7 +51,6 @@ PRINTED = {
     "nrs_design.design.linear_parts",
     "nrs_design.design.passivity",
     "nrs_design.search.margin",
-    "nrs_design.search.comparison",
 }
 
 

@@ -20,24 +20,19 @@ THESIS_ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 ABSENT = "the wing robot is not installed"
 
 
-def missing(name):
+@pytest.mark.parametrize(
+    ("name", "error", "said"),
+    [
+        *((f"nrs_design.robot{end}", NrsDesignError, ABSENT) for end in ("", ".pipeline")),
+        *((name, ModuleNotFoundError, name) for name in ("scipy", "nrs_design.robot.pipe")),
+    ],
+)
+def test_a_wing_that_is_missing_is_named_and_nothing_else_is_one(monkeypatch, name, error, said):
     def fail(module):
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
-    return fail
-
-
-@pytest.mark.parametrize("name", ["nrs_design.robot", "nrs_design.robot.pipeline"])
-def test_a_wing_that_is_missing_is_named(monkeypatch, name):
-    monkeypatch.setattr(nrs_design.wings, "import_module", missing(name))
-    with pytest.raises(NrsDesignError, match="the wing robot is not installed"):
-        load_wing("robot", "pipeline")
-
-
-@pytest.mark.parametrize("name", ["scipy", "nrs_design.spec", "nrs_design.robot.pipe"])
-def test_what_else_is_missing_is_no_missing_wing(monkeypatch, name):
-    monkeypatch.setattr(nrs_design.wings, "import_module", missing(name))
-    with pytest.raises(ModuleNotFoundError, match=name):
+    monkeypatch.setattr(nrs_design.wings, "import_module", fail)
+    with pytest.raises(error, match=said):
         load_wing("robot", "pipeline")
 
 

@@ -14,7 +14,7 @@ __all__ = ["main"]
 
 # Imports make many objects that stay until the end: to look at them takes as long as a short proof.
 COLLECT_AFTER = 200_000
-# Of addresses, in bytes: with less, OpenBLAS ends the process with code 1.
+# Address space in bytes that OpenBLAS needs; with less, it ends the process with code 1.
 LEAST_MEMORY = 512 * 2**20
 
 
@@ -38,7 +38,7 @@ def main() -> None:
             _end(f"internal error: nrs-design cannot be loaded: {error!a}", exit_codes.INTERNAL)
         run()
     except KeyboardInterrupt:
-        # Wherever it falls, be it into an import.
+        # An interrupt may also fall into an import.
         sys.exit(exit_codes.INTERRUPTED)
     except MemoryError:
         _end("error: there is not enough memory (allow more)", exit_codes.USAGE)

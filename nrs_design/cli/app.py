@@ -20,12 +20,12 @@ from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 from nrs_design.wings import load_wing, wing_of
 
-# Each command is in the module of its name, here or in its wing. The help keeps groups and order:
-# that of the work.
+# The module of a command, here or in a wing, has the name of the command. The help lists groups and
+# commands in this order.
 GROUPS = {
     "Start": ("init", "identify", "check", "explain", "schema"),
     "Design": ("optimize", "tune", "mode-logic", "simulate"),
-    "Prove": ("certify-switching", "verify", "sweep", "compare-methods", "check-lyapunov"),
+    "Prove": ("certify-switching", "verify", "sweep"),
     "Ship": ("report", "gate", "export", "diff", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),
 }
@@ -62,7 +62,16 @@ def _printably(call: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         if hasattr(error, "format_message") and hasattr(error, "message"):
             # pydantic puts "Value error, " in front of our messages.
             error.message = printable(error.message).removeprefix("Value error, ")
+            _print_as_json(NrsDesignError(printable(error.format_message())))
         raise
+
+
+def _print_as_json(error: NrsDesignError) -> None:
+    """Print an error where JSON is wanted, whether or not the command was read."""
+    if "--json" in sys.argv:
+        from nrs_design.cli.errors import error_summary
+
+        print_json("error", error_summary(error))
 
 
 def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
@@ -145,15 +154,14 @@ def main() -> None:
     try:
         _run()
     except NrsDesignError as error:
-        from nrs_design.cli.errors import error_summary, print_error
+        from nrs_design.cli.errors import print_error
 
-        if "--json" in sys.argv:
-            print_json("error", error_summary(error))
+        _print_as_json(error)
         print_error(error)
         stopped = isinstance(error, ClockError)
         sys.exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE)
     except OSError as error:
-        # Do not try to write the rest again at exit.
+        # At exit, Python must not write the remaining output again.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         # Standard output has no name.
         failed = "the output cannot be written"

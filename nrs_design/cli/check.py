@@ -24,8 +24,10 @@ def check(
 
     Example: nrs-design check specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.gating.find_specs import axes_or_whole
+
     results: list[dict[str, Any]] = []
-    for path in [axis for spec in specs for axis in _axes_at(spec)]:
+    for path in [axis for spec in specs for axis in axes_or_whole(spec)]:
         try:
             results.append(_understood(path))
         except NrsDesignError as error:
@@ -39,16 +41,6 @@ def check(
                 note(f"warning: {text}")
     valid = all(result["valid"] for result in results)
     return Answer(lambda: {"specs": results}, code=exit_codes.PROVED if valid else exit_codes.USAGE)
-
-
-def _axes_at(path: Path) -> tuple[Path, ...]:
-    """Return the axes of a spec with several; one that is wrong is judged as a whole."""
-    from nrs_design.spec.load import axes_at
-
-    try:
-        return axes_at(path)
-    except NrsDesignError:
-        return (path,)
 
 
 def _understood(path: Path) -> dict[str, Any]:

@@ -33,12 +33,12 @@ def _nothing() -> None:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a command has found."""
+    """Result of a command."""
 
     facts: Callable[[], dict[str, Any]] = dict  # Content of the JSON document
-    show: Callable[[], object] = _nothing  # Prints the same for people
+    show: Callable[[], object] = _nothing  # Prints the result as text
     code: int = exit_codes.PROVED
-    loud: bool = False  # Whether it is an error, which --quiet does not silence
+    loud: bool = False  # True for an error, which --quiet does not silence
 
     def deliver(self, name: str) -> None:
         """Print what is wanted, and end with the exit code."""
@@ -49,18 +49,14 @@ class Answer:
         raise typer.Exit(self.code)
 
     def tell(self) -> None:
-        """Print it for people; under --quiet only what it does not silence."""
+        """Print the result as text; under --quiet, print errors only."""
         if self.loud or wants_text():
             with output(as_json=False, quiet=False, verbose=wants_details()):
                 self.show()
 
 
 def command(
-    name: str,
-    *,
-    has_json: bool = True,
-    each_axis: bool = False,
-    passes_on: bool = False,
+    name: str, *, has_json: bool = True, each_axis: bool = False, passes_on: bool = False
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
 

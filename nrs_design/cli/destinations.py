@@ -1,4 +1,4 @@
-"""Where a result is written beside stdout: into a spec, onto a page."""
+"""Outputs of a result in addition to stdout: a spec and a page."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Destinations:
-    """Where a result is written: into a spec, onto a page."""
+    """Spec and page that a result is written to."""
 
-    spec: LoadedSpec | None  # What it is merged into
+    spec: LoadedSpec | None  # The spec that takes the result
     report: Path | None  # The page: ends in .html
-    date: datetime | None  # What the user wants to read as the date of the page
+    date: datetime | None  # Date on the page
 
     @classmethod
     def checked(cls, write: Path | None, report: Path | None, date: datetime | None) -> Self:
@@ -69,12 +69,16 @@ class Destinations:
             try:
                 merged = merge(spec)
             except NrsDesignError as error:
-                # What was found is printed all the same: it took its time.
+                # The result is printed nevertheless: its computation took time.
                 refused = error
                 print_error(error)
         if self.report is not None:
+            from nrs_design.output import PAGE, write_output
+            from nrs_design.reporting import render_html
+
             with progress("figures"):
-                _write_page(self.report, page(), self.date)
+                day = self.date.date() if self.date else None
+                write_output(self.report, render_html(replace(page(), date=day)), replaces=PAGE)
             note(f"page written to {self.report}")
         if refused is None:
             # No option silences this.
@@ -90,14 +94,6 @@ class Destinations:
             facts=lambda: answer.facts() | {"not_written": not_written},
             code=answer.code if refused is None else exit_codes.USAGE,
         )
-
-
-def _write_page(path: Path, report: Report, date: datetime | None) -> None:
-    from nrs_design.output import PAGE, write_output
-    from nrs_design.reporting import render_html
-
-    report = replace(report, date=date.date() if date else None)
-    write_output(path, render_html(report), replaces=PAGE)
 
 
 def _write_spec(spec: LoadedSpec, text: str) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import asdict
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -37,20 +38,12 @@ def print_error(error: NrsDesignError) -> None:
 
 
 def error_summary(error: NrsDesignError) -> dict[str, Any]:
-    """Return what ``--json`` prints about an error: its faults in file order, and their number."""
+    """Return the faults of an error in file order, and their number, for ``--json``."""
     return {
         "rule": error.rule,
         "count": len(error.faults),
         "path": None if error.path is None else str(error.path),
-        "faults": [
-            {
-                "message": fault.message,
-                "line": fault.line,
-                "column": fault.column,
-                "remedy": fault.remedy,
-            }
-            for fault in error.faults[:MAX_LISTED]
-        ],
+        "faults": [asdict(fault) for fault in error.faults[:MAX_LISTED]],
     }
 
 

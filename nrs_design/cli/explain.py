@@ -1,4 +1,4 @@
-"""``nrs-design explain``: what a rule or a verdict means, and what to do about it."""
+"""``nrs-design explain``: meaning and remedy of a rule or verdict."""
 
 from __future__ import annotations
 
@@ -26,17 +26,12 @@ def explain(
     """
     from dataclasses import asdict
 
-    from nrs_design.gating.rules import RETIRED, RULES, WORDS
+    from nrs_design.gating.rules import RULES, WORDS
 
     if rule is None:
         rules, words = list(RULES.values()), list(WORDS.values())
         facts = {"rules": [*map(asdict, rules)], "verdicts": [*map(asdict, words)]}
         return Answer(lambda: facts, lambda: _list(rules, words))
-    if rule.upper() in RETIRED:
-        raise NrsDesignError(
-            f"{rule.upper()} is retired: no finding has this id any more",
-            remedy="lock files of earlier releases may name it; that does no harm",
-        )
     entry = RULES.get(rule.upper()) or WORDS.get(rule.lower())
     if entry is None:
         raise NrsDesignError(

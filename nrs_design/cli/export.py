@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.runs import Recorded
 
 
-# A command of its own writes it, since it proves another law.
+# Another command writes this format, because it proves another law.
 ROS2: dict[str, Any] = {
     "name": "ros2",
     "purpose": "impedance controllers as parameters of admittance_controller of ROS 2",
@@ -49,8 +49,7 @@ def export(
         ),
     ] = None,
     out: Annotated[
-        Path,
-        typer.Option(help="Folder; for a format of one file also that file, with its ending."),
+        Path, typer.Option(help="Folder; for a format of one file also that file, with its ending.")
     ] = Path("reports"),
     sample_time: Annotated[
         str | None,
@@ -82,26 +81,23 @@ def export(
         raise NrsDesignError(
             f"{format_} is not a format of this command", remedy="use `nrs-design ros2 export`"
         )
-    chosen = known_format(format_)
-    execution = _execution(chosen, sample_time, unproved=unproved)
+    execution = _execution(known_format(format_), sample_time, unproved=unproved)
     return _export_design(spec, format_, certificate, out, execution)
 
 
 def _list() -> Answer:
-    entries: list[dict[str, Any]] = [
+    entries = [
         {
             "name": name,
-            "purpose": item.purpose,
-            "needs": item.needs,
-            "files": [f"NAME{ending}" for ending in item.files],
+            "purpose": format_of(name).purpose,
+            "needs": format_of(name).needs,
+            "files": [f"NAME{ending}" for ending in format_of(name).files],
         }
-        for name, item in ((name, format_of(name)) for name in format_names())
-    ]
-    entries.append(ROS2)
+        for name in format_names()
+    ] + [ROS2]
     rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
     return Answer(
-        lambda: {"formats": entries},
-        lambda: print_table("", ("format", "what for", "needs"), rows),
+        lambda: {"formats": entries}, lambda: print_table("", ("format", "what for", "needs"), rows)
     )
 
 
@@ -131,11 +127,7 @@ def _seconds(text: str) -> Fraction:
 
 
 def _export_design(
-    spec: Path,
-    format_: str,
-    certificate: Path | None,
-    out: Path,
-    execution: Execution | None,
+    spec: Path, format_: str, certificate: Path | None, out: Path, execution: Execution | None
 ) -> Answer:
     from nrs_design.api.exported import Exported
     from nrs_design.exporters.export import export_design, export_proof
@@ -161,7 +153,7 @@ def _export_design(
             result = export_design(loaded, certificate, step, execution, recorded)
     remarks: tuple[str, ...] = ()
     if result.may_be_written:
-        # A design of which there is no program is told at its place in the spec.
+        # The error about a design without a program names its place in the spec.
         with placed(loaded):
             remarks = write_export(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.may_be_written else []
@@ -181,7 +173,7 @@ def _export_design(
 
 
 def _recorded(spec: Path, beside: Path) -> Recorded:
-    """Return the certificate that nrs.lock of this folder has for a spec; else the one beside."""
+    """Return the certificate of a spec in the nrs.lock of this folder; else that in `beside`."""
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import recorded_in
     from nrs_design.pipeline.runs import Recorded
@@ -198,10 +190,9 @@ def _show(
         note(f"{name}: not exported: {result.reason}")
         return
     where = ", ".join(map(str, written))
-    if result.verdict == "proved":
-        say(f"{name}: PROVED, exported to {where}", verdict="proved")
-    else:
-        say(f"{name}: UNPROVED ({result.reason}), exported to {where}")
+    proved = result.verdict == "proved"
+    verdict = "PROVED" if proved else f"UNPROVED ({result.reason})"
+    say(f"{name}: {verdict}, exported to {where}", verdict="proved" if proved else "")
     if result.certificate is not None:
         note(f"certificate: {proof}")
     for remark in remarks:

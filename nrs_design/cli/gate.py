@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated, Literal, NoReturn
@@ -20,8 +19,6 @@ from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import Caution, GateOutcome
-    from nrs_design.gating.run import Files
-    from nrs_design.pipeline.certification import Overrides
 
 GateFormat = Literal["text", "github", "sarif", "junit", "json", "markdown"]
 # Folders that a note lists by name.
@@ -85,6 +82,9 @@ def gate(
 
     Example: nrs-design gate --locked --against ../base specs
     """
+    from nrs_design.gating.find_specs import find_specs
+    from nrs_design.output import LOCK, check_place
+
     chosen = format_of(format_)
     _check_options(out, jobs, locked=locked, prune=prune)
     refuse_both(("--pages", "--no-reports", pages and no_reports))
@@ -93,18 +93,30 @@ def gate(
     if against is not None:
         from nrs_design.gating.against import base_paths
 
-        # What cannot be compared is said before minutes of search. A lock file that is elsewhere
-        # would be compared with itself.
+        # Paths without a place in the base are refused before minutes of search; a lock file
+        # outside of both folders would be compared with itself.
         base_paths([*paths, lock], against)
+    specs = find_specs(paths)
     if locked:
-        outcome = _re_check(paths, lock)
+        from nrs_design.gating.lock import read_lock
+        from nrs_design.gating.locked import run_locked
+
+        content = read_lock(lock)
+        with progress("gate") as step:
+            outcome = run_locked(specs, content, lock, step, named=paths)
     else:
-        from nrs_design.gating.run import Files
+        from nrs_design.gating.lock import read_lock_if_any
+        from nrs_design.gating.renew import check_folder, recorded_in, write_lock
+        from nrs_design.gating.run import Files, run_gate
         from nrs_design.pipeline.certification import Overrides
 
-        files = Files(folder=reports, html=not no_reports, every_page=pages)
-        overrides = Overrides(budget=budget, memory=memory)
-        outcome = _certify(paths, lock, files, overrides, jobs, prune=prune)
+        check_folder(reports, lock)
+        check_place(lock, LOCK)
+        known = recorded_in(read_lock_if_any(lock), lock)
+        files = Files(folder=reports, html=not no_reports, every_page=pages, locked=known)
+        with progress("gate") as step:
+            outcome = run_gate(specs, files, step, Overrides(budget=budget, memory=memory), jobs)
+        outcome = write_lock(outcome, lock, prune=prune)
     outcome = _with_not_examined(outcome, paths)
     if against is not None:
         from nrs_design.gating.against import compare_with_base
@@ -131,14 +143,14 @@ def _warn(item: Caution) -> None:
 
 
 def format_of(format_: GateFormat) -> GateFormat:
-    """Return the format that is asked for; --json is short for one of them."""
+    """Return the requested format; --json stands for ``--format json``."""
     as_json = wants_json()
     refuse_both(("--json", f"--format {format_}", as_json and format_ not in ("text", "json")))
     return "json" if as_json else format_
 
 
 def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) -> None:
-    """Refuse what excludes each other, and what must not be overwritten, before the work."""
+    """Refuse contradicting options and foreign output files before the work."""
     from nrs_design.gating.find_specs import SUFFIXES
     from nrs_design.output import GATE, check_place
 
@@ -155,21 +167,20 @@ def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) ->
 
 
 def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None:
-    """Write the document to where it is wanted; people see a text, too."""
+    """Write the document to stdout or the file --out, and a summary to the terminal."""
     from nrs_design.gating.formats import FORMATS
+    from nrs_design.gating.formats.text import summary_line
     from nrs_design.output import GATE, write_output
 
-    document = FORMATS[chosen](outcome)
-    if out is not None:
-        write_output(out, document, replaces=GATE)
-    elif chosen == "text":
+    if out is None and chosen == "text":
         _show(outcome)
-    else:
+        return
+    document = FORMATS[chosen](outcome)
+    if out is None:
         sys.stdout.write(document)
-    if out is not None or chosen != "text":
-        from nrs_design.gating.formats.text import summary_line
-
-        note(summary_line(outcome))
+    else:
+        write_output(out, document, replaces=GATE)
+    note(summary_line(outcome))
 
 
 def _show(outcome: GateOutcome) -> None:
@@ -186,41 +197,6 @@ def _show(outcome: GateOutcome) -> None:
         say(line)
 
 
-def _certify(
-    paths: list[Path],
-    lock: Path,
-    files: Files,
-    overrides: Overrides,
-    jobs: int,
-    *,
-    prune: bool,
-) -> GateOutcome:
-    from nrs_design.gating.find_specs import find_specs
-    from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import check_folder, recorded_in, write_lock
-    from nrs_design.gating.run import run_gate
-    from nrs_design.output import LOCK, check_place
-
-    specs = find_specs(paths)
-    check_folder(files.folder, lock)
-    check_place(lock, LOCK)
-    known = read_lock_if_any(lock)
-    with progress("gate") as step:
-        files = replace(files, locked=recorded_in(known, lock))
-        outcome = run_gate(specs, files, step, overrides, jobs)
-    return write_lock(outcome, lock, prune=prune)
-
-
-def _re_check(paths: list[Path], lock: Path) -> GateOutcome:
-    from nrs_design.gating.find_specs import find_specs
-    from nrs_design.gating.lock import read_lock
-    from nrs_design.gating.locked import run_locked
-
-    specs, content = find_specs(paths), read_lock(lock)
-    with progress("gate") as step:
-        return run_locked(specs, content, lock, step, named=paths)
-
-
 def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
     from nrs_design.gating.find_specs import SUFFIXES, find_misnamed, find_passed_over
 
@@ -229,10 +205,7 @@ def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
         f"not examined, for want of a name that ends in {SUFFIXES[0]}": find_misnamed(paths),
     }.items():
         if found:
-            outcome = outcome.with_note(f"{why}: {_listed(found)}")
+            listed = ", ".join(path.as_posix() for path in found[:SHOWN])
+            more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
+            outcome = outcome.with_note(f"{why}: {listed}{more}")
     return outcome
-
-
-def _listed(paths: tuple[Path, ...]) -> str:
-    more = f" and {len(paths) - SHOWN} more" if len(paths) > SHOWN else ""
-    return ", ".join(path.as_posix() for path in paths[:SHOWN]) + more

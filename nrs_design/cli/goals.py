@@ -1,4 +1,4 @@
-"""What several commands say of goals, and of what a proof takes for granted."""
+"""Printing of goals and assumptions, for several commands."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
 
 
-# The option -v prints as many names of modes; --json prints all names.
+# Number of mode names that -v prints; --json prints all names.
 MODE_NAMES = 10
 
 
 def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
-    """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
+    """Print each goal of the spec with its worst achieved value; nothing without goals."""
     from nrs_design.design.measures import MEANING, computed
 
     rows = [
@@ -53,7 +53,7 @@ def print_goal(goal: CertifiedGoal, indent: str = "") -> None:
 
 
 def print_granted(result: Result) -> None:
-    """Print what is taken for granted: all of it, or how much and what is not modelled."""
+    """Print all assumptions, or their number and the effects that are not modelled."""
     from nrs_design.certificates.catalogue import sentences
 
     certification = result.certification

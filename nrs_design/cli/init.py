@@ -55,6 +55,7 @@ def init(
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """
     from nrs_design.output import write_output
+    from nrs_design.spec.schema import schema_text
     from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 
     chosen: str = template
@@ -75,7 +76,10 @@ def init(
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")
     write_output(path, named_after(path, TEMPLATES[chosen]))
     note(f"{path} written")
-    _write_schema(path.with_name(SCHEMA))
+    schema = path.with_name(SCHEMA)
+    if not schema.exists():
+        write_output(schema, schema_text())
+        note(f"{schema} written, for help in your editor")
     return Answer()
 
 
@@ -85,15 +89,6 @@ def named_after(path: Path, template: str) -> str:
     name = re.sub("[^a-z0-9._-]+", "-", stem).strip("._-")[:64]
     if not name:
         return template
-    # The comment beside it stays in its column.
+    # The comment behind the name stays in its column.
     line = re.compile("^name: ([^ ]+)( *)", re.MULTILINE)
     return line.sub(lambda m: f"name: {name} ".ljust(len(m[0])), template, count=1)
-
-
-def _write_schema(path: Path) -> None:
-    from nrs_design.output import write_output
-    from nrs_design.spec.schema import schema_text
-
-    if not path.exists():
-        write_output(path, schema_text())
-        note(f"{path} written, for help in your editor")

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
 from nrs_design.cli.tables import print_blocks
-
-if TYPE_CHECKING:
-    from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
 @command("mode-logic")
@@ -22,29 +17,21 @@ def mode_logic(spec: SpecFile) -> Answer:
 
     Example: nrs-design mode-logic docs/examples/insertion-by-sign.nrs.yaml
     """
-    from nrs_design.reporting.sections.mode_logic import logic_summary
+    from nrs_design.pipeline.design import wrong_kind
+    from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_summary, logic_tables
 
     loaded = take_spec(spec)
-    declared = _with_logic(loaded)
-    return Answer(lambda: loaded.facts | logic_summary(declared), lambda: _show(declared))
-
-
-def _show(declared: InteractionDesignSpec) -> None:
-    from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_tables
-
-    print_blocks(declared.name, logic_tables(declared))
-    for line in logic_meaning(declared):
-        say(line)
-
-
-def _with_logic(loaded: LoadedSpec) -> InteractionDesignSpec:
-    from nrs_design.pipeline.design import wrong_kind
-
-    spec = loaded.spec
-    if spec.kind != "interaction-design" or spec.mode_logic is None:
+    declared = loaded.spec
+    if declared.kind != "interaction-design" or declared.mode_logic is None:
         raise wrong_kind(
             loaded,
             "the spec has no mode_logic",
             "add one to an interaction design, see docs/design/mode-logic.md",
         )
-    return spec
+
+    def show() -> None:
+        print_blocks(declared.name, logic_tables(declared))
+        for line in logic_meaning(declared):
+            say(line)
+
+    return Answer(lambda: loaded.facts | logic_summary(declared), show)

@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certified_optimum import CertifiedOptimum
     from nrs_design.pipeline.design import Designed
 
-_ON_BOUND = (
-    "the cost has neither noise of the sensor nor effort of the motor: look at both before you "
-    "take it"
-)
-
 
 @command("optimize", each_axis=True)
 def optimize(spec: SpecFile) -> Answer:
@@ -82,7 +77,7 @@ def optimize(spec: SpecFile) -> Answer:
 
 
 def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
-    """Return what is proved of gains that were chosen by it, in SI units."""
+    """Return the proved facts of gains that a proof has chosen, in SI units."""
     from nrs_design.certificates.goals import decay_rate
 
     rate = decay_rate(found.result.certificate)
@@ -111,7 +106,7 @@ def _declared(found: CertifiedOptimum) -> list[int] | None:
 
 
 def _print_certified(shown: Optimum, found: CertifiedOptimum) -> None:
-    """Print what a proof takes for granted by which gains were chosen, and what it costs."""
+    """Print assumptions and cost of the proof that has chosen the gains."""
     print_granted(found.result)
     if shown.analysis.impedance:
         more = max(found.cost - found.free_cost, 0.0)
@@ -135,8 +130,10 @@ def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> No
             value = shown.designed.design.laws[name].gains[gain]
             times = f"{float(value / given.design.laws[name].gains[gain]):.3g} times the given one"
             on = bounds.get(f"{name} {gain}")
-            end = "" if on is None else f": on its {on} bound; {_ON_BOUND}"
-            say(f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}{end}")
+            said = f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
+            unseen = "the cost has neither noise of the sensor nor effort of the motor"
+            end = f": on its {on} bound; {unseen}: look at both before you take it"
+            say(said if on is None else said + end)
     if (delay := _declared(found)) is not None:
         say(f"proved for `sampling.delay: {delay}`, more than the spec declares")
 
@@ -156,18 +153,9 @@ def _print(shown: Optimum) -> None:
     if not items:
         note("no impedance controllers in this spec; see nrs-design tune for the others")
         return
-    columns = [
-        "controller",
-        f"Mt\n{unit('kg m^2')}",
-        f"Bt\n{unit('N m s/rad')}",
-        "cost",
-        "Ms",
-        "gain\nmargin",
-        "phase\nmargin",
-        "delay\nmargin",
-        "disk\nmargin",
-        f"stands up to\n{unit('N m/rad')}",
-    ]
+    margins = [f"{what}\nmargin" for what in ("gain", "phase", "delay", "disk")]
+    columns = ["controller", f"Mt\n{unit('kg m^2')}", f"Bt\n{unit('N m s/rad')}", "cost", "Ms"]
+    columns += [*margins, f"stands up to\n{unit('N m/rad')}"]
     print_table(f"{name}: {_worst_of(items)}", columns, [*map(_cells, items)])
     for line in _marks(items):
         say(line)
@@ -207,15 +195,13 @@ def _worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
     """Say over what the margins of a table are the worst."""
     from nrs_design.design.measures import MARGINS
 
-    if all(
-        one.proved is not None or one.everywhere for i in items for one in map(i.shown, MARGINS)
-    ):
-        return "the worst over all ranges"
-    return "the worst at the corners of all ranges"
+    shown = (one for item in items for one in map(item.shown, MARGINS))
+    whole = all(one.proved is not None or one.everywhere for one in shown)
+    return f"the worst {'over' if whole else 'at the corners of'} all ranges"
 
 
 def _print_basis(items: Sequence[ImpedanceAnalysis]) -> None:
-    """Print which margins are proved of all controllers, and what the others are."""
+    """Print which margins are proved for all controllers, and the basis of the others."""
     from nrs_design.api.optimum import meanings
     from nrs_design.design.measures import MARGINS
 

@@ -24,7 +24,7 @@ def read_work(text: str) -> float:
 
 
 def seconds(low: float = 0.0, high: float = float("inf")) -> Callable[[str], float]:
-    """Return what reads a time for an option, ``0.001`` or ``1 ms``, between two times in s.
+    """Return a reader of times, ``0.001`` or ``1 ms``, between two bounds in s.
 
     It raises `typer.BadParameter` on anything else.
     """
@@ -67,8 +67,6 @@ def refuse_both(*pairs: tuple[str, str, object], reason: str = "") -> None:
 
 
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
-
-
 MaxDegree = Annotated[
     int | None,
     typer.Option(
@@ -88,8 +86,7 @@ Budget = Annotated[
     ),
 ]
 Memory = Annotated[
-    float | None,
-    typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2."),
+    float | None, typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2.")
 ]
 GradientSettings = Annotated[
     list[str] | None,
@@ -112,6 +109,5 @@ Date = Annotated[
 ]
 
 ReportTo = Annotated[
-    Path | None,
-    typer.Option("--report", metavar="FILE", help="Write a page with figures (.html)."),
+    Path | None, typer.Option("--report", metavar="FILE", help="Write a page with figures (.html).")
 ]

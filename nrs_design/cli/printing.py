@@ -20,7 +20,7 @@ from typing import Any, TextIO
 from nrs_design.printable import json_text, printable
 
 _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cyan": "36"}
-# Seconds between the steps that are told where there is no spinner.
+# Seconds between two progress lines on a stream without a spinner.
 SILENCE = 10.0
 # Columns of a line where there is no terminal, and COLUMNS does not say otherwise.
 WIDTH = 100
@@ -29,7 +29,6 @@ COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive
 _json: ContextVar[bool] = ContextVar("json", default=False)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 _verbose: ContextVar[bool] = ContextVar("verbose", default=False)
-_taken: ContextVar[list[str] | None] = ContextVar("taken", default=None)
 
 
 @contextmanager
@@ -60,29 +59,14 @@ def wants_details() -> bool:
 
 
 def is_quiet() -> bool:
-    """Whether nothing but errors is wanted beside the result."""
+    """Whether --quiet silences all but errors and the result."""
     return _quiet.get()
 
 
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
     envelope = {"schema": f"nrs-design/{command}/1", **content}
-    text, taken = json_text(envelope, allow_nan=False), _taken.get()
-    if taken is None:
-        print(text)
-    else:
-        taken.append(text)
-
-
-@contextmanager
-def taking_json() -> Iterator[list[str]]:
-    """Take the documents that are printed within, in this thread, in place of printing them."""
-    documents: list[str] = []
-    token = _taken.set(documents)
-    try:
-        yield documents
-    finally:
-        _taken.reset(token)
+    print(json_text(envelope, allow_nan=False))
 
 
 def say(line: str = "", *, verdict: str = "", hanging: int = 2) -> None:
@@ -95,13 +79,13 @@ def say(line: str = "", *, verdict: str = "", hanging: int = 2) -> None:
 
 
 def detail(line: str) -> None:
-    """Print one line of the result that only --verbose asks for."""
+    """Print one line of the result under --verbose."""
     if wants_details():
         say(line)
 
 
 def say_failure(line: str, status: str) -> None:
-    """Print one line about what is not fulfilled, --quiet or not; its status is coloured."""
+    """Print one line about a missed obligation, also under --quiet, with a coloured status."""
     text, colour = wrapped(printable(line), sys.stdout), COLOURS.get(status, "red")
     print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
 
@@ -118,7 +102,7 @@ def insist(line: str) -> None:
 
 
 def painted(text: str, colour: str, stream: TextIO) -> str:
-    """Colour a text if the stream is a terminal, and its user has not asked for none (NO_COLOR)."""
+    """Colour a text if the stream is a terminal, unless the user has set NO_COLOR."""
     dull = os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb"
     return text if dull or not stream.isatty() else f"\x1b[{_CODES[colour]}m{text}\x1b[0m"
 

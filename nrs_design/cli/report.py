@@ -33,8 +33,7 @@ def report(
         typer.Option("--margin", help="Add how far ranges, delay and period reach; takes minutes."),
     ] = False,
     shortest_dwell: Annotated[
-        bool,
-        typer.Option("--shortest-dwell", help="Add the shortest dwell time; takes minutes."),
+        bool, typer.Option("--shortest-dwell", help="Add the shortest dwell time; takes minutes.")
     ] = False,
     certificate: Annotated[
         Path | None,
@@ -107,10 +106,8 @@ def _answer(
         }
 
     def show() -> None:
-        if verdict in exit_codes.OF_VERDICT:
-            say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
-        else:
-            say(f"{loaded.spec.name}: {verdict}")
+        decided = verdict if verdict in exit_codes.OF_VERDICT else ""
+        say(f"{loaded.spec.name}: {decided.upper() or verdict}", verdict=decided)
         for line in steps:
             say(f"next: {line}")
         note(f"written to {place}")

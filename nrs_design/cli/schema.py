@@ -28,22 +28,14 @@ def schema(
 
     Example: nrs-design schema --of export
     """
+    from nrs_design.exporters.record import record_schema_text
     from nrs_design.output import SCHEMA, write_output
+    from nrs_design.spec.schema import schema_text
 
-    text = _text(of)
+    text = record_schema_text() if of == "export" else schema_text()
     if out is None:
         sys.stdout.write(text)
-        return Answer()
-    write_output(out, text, replaces=SCHEMA)
-    note(f"schema written to {out}")
+    else:
+        write_output(out, text, replaces=SCHEMA)
+        note(f"schema written to {out}")
     return Answer()
-
-
-def _text(of: Described) -> str:
-    if of == "export":
-        from nrs_design.exporters.record import record_schema_text
-
-        return record_schema_text()
-    from nrs_design.spec.schema import schema_text as spec_schema_text
-
-    return spec_schema_text()

@@ -1,4 +1,4 @@
-"""What ``nrs-design simulate`` does: scenarios, each run once, or an adversary; files of runs."""
+"""Runs of ``nrs-design simulate``: all scenarios once, or an adversary; their files."""
 
 from __future__ import annotations
 
@@ -13,15 +13,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import note, say, wants_details
 from nrs_design.cli.tables import print_table
-from nrs_design.output import (
-    PNG,
-    RESPONSE,
-    SVG,
-    Beginning,
-    Output,
-    check_place,
-    write_outputs,
-)
+from nrs_design.output import PNG, RESPONSE, SVG, Beginning, Output, check_place, write_outputs
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
@@ -132,7 +124,7 @@ def _write_runs(
 
 
 def _print_briefly(runs: Simulation) -> None:
-    """Print a row for each run, and what went wrong in one."""
+    """Print a row for each run, and the faults of each run."""
     from nrs_design.axis import current
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up
@@ -148,27 +140,13 @@ def _print_briefly(runs: Simulation) -> None:
             for key, name in peaks.items()
         }
         beyond = beyond or "!" in "".join(shown.values())
-        rows.append(
-            [
-                one.name,
-                shown["torque"],
-                upper(Fraction(proved["force"]), 4) if "force" in proved else "-",
-                f"{limits['torque']:.4g}",
-                shown["velocity"],
-                shown["deflection"],
-                str(one.metrics["switches"]),
-            ]
-        )
-    columns = [
-        "run",
-        f"largest\n{unit('N m')}",
-        f"proved\n{unit('N m')}",
-        f"limit\n{unit('N m')}",
-        f"speed\n{unit('deg/s')}",
-        f"deflection\n{unit('deg')}",
-        "switches",
-    ]
-    print_table("", columns, rows)
+        bound = upper(Fraction(proved["force"]), 4) if "force" in proved else "-"
+        torque = (shown["torque"], bound, f"{limits['torque']:.4g}")
+        moved = (shown["velocity"], shown["deflection"], str(one.metrics["switches"]))
+        rows.append([one.name, *torque, *moved])
+    torques = [f"{what}\n{unit('N m')}" for what in ("largest", "proved", "limit")]
+    moves = [f"speed\n{unit('deg/s')}", f"deflection\n{unit('deg')}"]
+    print_table("", ["run", *torques, *moves, "switches"], rows)
     if beyond:
         say("! beyond a limit of the spec or the scenario")
     for one in runs:
@@ -182,7 +160,7 @@ def _print_briefly(runs: Simulation) -> None:
 
 
 def _print(one: ScenarioRun) -> None:
-    """Print the metrics of a run, bounds beside what they bound."""
+    """Print the metrics of a run with their certified bounds."""
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up, metric_rows
 

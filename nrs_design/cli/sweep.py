@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -22,8 +22,7 @@ from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from nrs_design.cli.sweep_point import Job
-    from nrs_design.sweeps.answers import PointAnswer
+    from nrs_design.cli.sweep_point import Job, PointAnswer
     from nrs_design.sweeps.table import Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
@@ -33,7 +32,6 @@ SWEPT = (
     "tune",
     "mode-logic",
     "certify-switching",
-    "compare-methods",
     "simulate",
     "robot check",
     "robot kinematics",
@@ -41,9 +39,9 @@ SWEPT = (
     "robot balance",
     "robot correction",
 )
-# What a terminal shows of rows, columns and messages; --csv and --json hold them all.
+# Largest numbers of rows, columns and messages on a terminal; --csv and --json hold all.
 MOST_ROWS, MOST_COLUMNS, MOST_MESSAGES = 200, 6, 5
-# What an answer without a verdict is called, by its exit code.
+# Words for answers without a verdict, by exit code.
 WORDS = {
     exit_codes.PROVED: "met",
     exit_codes.REFUTED: "missed",
@@ -73,13 +71,6 @@ def sweep(
             "count '1..250/16 N*m/rad'. Up to three times: every combination is a point.",
         ),
     ],
-    resume: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Keep every answer in this file as it comes; the same command goes on from it.",
-        ),
-    ] = None,
     jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
     shown: Annotated[
         list[str] | None,
@@ -96,9 +87,6 @@ def sweep(
 ) -> Answer:
     """Run a command for every combination of values of one to three fields of a spec.
 
-    What a file of --resume holds as proved or refuted is used again only if its certificate is
-    checked again, and holds.
-
     The exit code is that of the worst point: 4 before 2 before 1 before 3 before 0.
 
     Example: nrs-design sweep SPEC --set 'environments.soft.stiffness=500..2500/5 N/m'
@@ -109,14 +97,15 @@ def sweep(
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
     from nrs_design.sweeps.grid import read_grid
-    from nrs_design.sweeps.table import chosen
+    from nrs_design.sweeps.table import chosen, flat
 
     if table is not None:
         check_place(table, SWEEP)
     name = _named(words)
     job = Job(spec, read_grid(spec, fields), name, tuple(words[len(name) :]))
     _check_options(job)
-    found = _Swept.of(job, _points(job, jobs, resume))
+    points = _points(job, jobs)
+    found = _Swept(job, points, [dict(flat(point.result or {})) for point in points])
     names = chosen(found.rows, shown) if shown else None
     if table is not None:
         write_output(table, found.table(), replaces=SWEEP)
@@ -154,41 +143,27 @@ def _check_options(job: Job) -> None:
             )
 
 
-def _points(job: Job, jobs: int, file: Path | None) -> list[PointAnswer]:
-    """Compute what is not there, and return all points in the order of the grid."""
+def _points(job: Job, jobs: int) -> list[PointAnswer]:
+    """Return the answers of all points, in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
     from nrs_design.processes import map_in_processes
-    from nrs_design.sweeps.answers import add_answer, read_answers
 
-    there = {} if file is None else read_answers(file)
-    points = [(values, there.get(values)) for values in job.grid.points]
+    points = job.grid.points
     found: dict[int, PointAnswer] = {}
-    computed = 0
     with progress(f"{len(points)} points") as step:
         for at, answer in map_in_processes(partial(answer_point, job), points, jobs):
             found[at] = answer
-            if answer != points[at][1]:
-                computed += 1
-                if file is not None and answer.error is None:
-                    add_answer(file, answer)
             step(f"{len(found)} done")
-    note(f"{computed} computed, {len(found) - computed} were there")
     return [found[at] for at in range(len(points))]
 
 
 @dataclass(frozen=True, slots=True)
 class _Swept:
-    """What a sweep has found: the same for any number of processes."""
+    """Answers of a sweep; the number of processes does not change them."""
 
     job: Job
     points: Sequence[PointAnswer]
     rows: Sequence[Row]  # Facts of each point
-
-    @classmethod
-    def of(cls, job: Job, points: Sequence[PointAnswer]) -> Self:
-        from nrs_design.sweeps.table import flat
-
-        return cls(job, points, [dict(flat(point.result or {})) for point in points])
 
     def facts(self) -> dict[str, Any]:
         """Return the content of the JSON document."""
@@ -227,7 +202,7 @@ class _Swept:
         """Print what was set, how it ended, and some facts; by default those that differ."""
         from nrs_design.sweeps.table import cell_text, telling
 
-        # How it ended has a column of its own.
+        # The column `answer` shows the verdict.
         names = wanted or [name for name in telling(self.rows) if name != "verdict"]
         names, more = (names, []) if wanted else (names[:MOST_COLUMNS], names[MOST_COLUMNS:])
         columns = [f"{f.path}\n{f.unit}" if f.unit else f.path for f in self.job.grid.fields]
@@ -259,7 +234,7 @@ class _Swept:
         ]
 
     def _messages(self) -> Iterator[str]:
-        """Yield what is wrong, with the values of the first point of which it is said."""
+        """Yield each error message once, with the values of its first point."""
         paths = [field.path for field in self.job.grid.fields]
         said = {_message(point): point for point in reversed(self.points) if point.error}
         for message, point in reversed(said.items()):

@@ -17,7 +17,7 @@ Cells = Sequence[str]
 
 # Longer cells are sentences and may be wrapped; shorter ones are never broken.
 SENTENCE = 40
-# Between two columns; at both edges together there is one less.
+# Spaces between two columns; both edges together have one less.
 _GAP = 3
 
 
@@ -48,7 +48,7 @@ def print_table(title: str, columns: Cells, given: Iterable[Cells]) -> None:
 
 
 def _turned(columns: Cells, rows: Sequence[Cells], width: int) -> Iterator[list[Cells]]:
-    """Yield transposed tables: the headings, then as many rows as fit beside each other."""
+    """Yield transposed tables: the headings, then all rows that fit into the width."""
     headings = [" ".join(column.split("\n")) for column in columns]
     beside: list[Cells] = []
     for row in rows:

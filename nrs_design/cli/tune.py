@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.optimum import Optimum, goals_summary, motion_summary
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer
@@ -27,6 +26,7 @@ def tune(spec: SpecFile) -> Answer:
 
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
+    from nrs_design.api.optimum import Optimum
     from nrs_design.errors import DesignError
     from nrs_design.pipeline.runs import run_interaction
 
@@ -51,6 +51,8 @@ def tune(spec: SpecFile) -> Answer:
 
 
 def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:
+    from nrs_design.api.optimum import goals_summary
+
     return {
         "motion": _motion_summary(design, analysis),
         "force": [
@@ -96,6 +98,8 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
 
 
 def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any] | None:
+    from nrs_design.api.optimum import motion_summary
+
     wanted, reached = analysis.wanted, analysis.reached
     if wanted is None:
         return None

@@ -14,7 +14,6 @@ from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.certificates.verify import Verification
     from nrs_design.exporters.deployed import DeployedFiles
     from nrs_design.spec import LoadedSpec, Spec
 
@@ -58,9 +57,14 @@ def verify(
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.certificates.prove import read_document
+    from nrs_design.certificates.verify import verify_document
+
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
-    outcome, loaded = _verify(certificate, spec)
+    document = read_document(certificate)
+    loaded = None if spec is None else take_spec(spec)
+    outcome = verify_document(document, loaded)
     checked = outcome.certificate if outcome.fault is None else None
     found = _deployed(deployed, loaded, checked)
     rejected = checked is None or (found is not None and bool(found.differences))
@@ -83,27 +87,14 @@ def verify(
         if checked is None:
             say(f"REJECTED: {outcome.fault}", verdict="rejected")
             return
-        # What was deployed comes first: a proof of other numbers is no good news.
+        # The deployed files come first: a proof of other numbers is no good news.
         if deployed is not None and found is not None:
             _print_deployed(deployed, found)
         if not brief:
             _print(checked, None if loaded is None else loaded.spec)
 
-    return Answer(
-        facts,
-        show,
-        exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
-        loud=rejected,
-    )
-
-
-def _verify(certificate: Path, spec: Path | None) -> tuple[Verification, LoadedSpec | None]:
-    from nrs_design.certificates.prove import read_document
-    from nrs_design.certificates.verify import verify_document
-
-    document = read_document(certificate)
-    loaded = None if spec is None else take_spec(spec)
-    return verify_document(document, loaded), loaded
+    code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
+    return Answer(facts, show, code, loud=rejected)
 
 
 _NEXT = {
@@ -115,7 +106,7 @@ _NEXT = {
 def _deployed(
     deployed: Path | None, loaded: LoadedSpec | None, checked: Certificate | None
 ) -> DeployedFiles | None:
-    """Compare what was deployed with a certificate that holds; None if there is nothing to do."""
+    """Compare deployed files with a valid certificate; None without files or certificate."""
     if deployed is None or loaded is None or checked is None:
         return None
     from nrs_design.exporters.deployed import compare_deployed

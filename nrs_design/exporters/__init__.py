@@ -20,14 +20,14 @@ SAMPLED = "a proof of the sampled loop, or --unproved"
 class Format:
     """Purpose and files of a format."""
 
-    purpose: str  # What the files are for, in a few words
-    needs: str  # What there must be before they are written
+    purpose: str  # Use of the files, in a few words
+    needs: str  # Condition for an export
     # Ending of each file, after the name of the spec, and the first bytes of the file. A file that
     # begins otherwise is not overwritten.
     files: Mapping[str, bytes]
-    # Whether a processor runs it, so that the proof must be about the sampled loop.
+    # True if a processor runs the files: the proof must be about the sampled loop.
     executable: bool = False
-    # Whether the name of a file must be one of a program, such as `soft_tissue` for `soft-tissue`.
+    # True if file names must be identifiers, such as `soft_tissue` for `soft-tissue`.
     identifier: bool = False
     # Whether a certificate is enough, without a design.
     alone: bool = False
@@ -40,13 +40,13 @@ def format_names() -> tuple[str, ...]:
 
 
 def format_of(name: str) -> Format:
-    """Return what a format of a design is for, by one of `format_names`."""
+    """Return a format by its name, one of `format_names`."""
     found: Format = _module(name).FORMAT
     return found
 
 
 def known_format(name: str) -> Format:
-    """Return what a format is for, by its name; a `NrsDesignError` if there is no such format."""
+    """Return a format by its name; an unknown name is a `NrsDesignError`."""
     if name not in format_names():
         from nrs_design.spec.faults import did_you_mean
 

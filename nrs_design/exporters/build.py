@@ -1,4 +1,4 @@
-"""A design and what is proved of it, put together to an export record."""
+"""Export record of a design and its proof."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from nrs_design.controllers.gains import gains_of, idle_decay
 from nrs_design.errors import CertificateError
 from nrs_design.exporters.record import (
     CompliantController,
-    DecayRate,
     ExportRecord,
     ForceFilter,
     Gain,
@@ -33,9 +32,7 @@ from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
 def build_record(
-    design: ControllerDesign,
-    certificate: Certificate,
-    spec: InteractionDesignSpec,
+    design: ControllerDesign, certificate: Certificate, spec: InteractionDesignSpec
 ) -> ExportRecord:
     """Put a design and its proof together.
 
@@ -51,7 +48,7 @@ def build_record(
     return ExportRecord(
         **_contents(design, spec),
         spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
-        sample_time=_sample_time(None if sampling is None else sampling.step),
+        sample_time=None if sampling is None else SampleTime(exact=exact_text(sampling.step)),
         delay=None if sampling is None else sampling.delay,
         timing=_timing(spec),
         outside=outside_of(sampled=system.sample_time is not None, rounded=rounded),
@@ -73,7 +70,7 @@ def build_unproved(
         spec=SpecReference(name=spec.name, sha256=loaded.sha256),
         verdict="unproved",
         unproved=reason,
-        sample_time=_sample_time(period),
+        sample_time=SampleTime(exact=exact_text(period)),
         delay=None if spec.sampling is None else spec.sampling.delay,
         timing=_timing(spec),
         outside=outside_of(sampled=False, rounded=False) if proof else (NOTHING,),
@@ -82,7 +79,7 @@ def build_unproved(
 
 
 def _contents(design: ControllerDesign, spec: InteractionDesignSpec) -> dict[str, Any]:
-    """Return what ships, whatever is known of it."""
+    """Return the fields of a record that need no proof."""
     idle, low_pass = spec.idle_states, design.sensor.filter
     return {
         "package": Package(version=__version__),
@@ -117,9 +114,11 @@ def _proof(certificate: Certificate) -> Proof:
         {
             "claim": evidence.claim(system),
             "certificate_id": certificate.id,
-            "decay_rate": DecayRate.model_validate(
-                {"exact": str(rate), "rounded": rate_text(rate, system.time), "unit": unit}
-            ),
+            "decay_rate": {
+                "exact": str(rate),
+                "rounded": rate_text(rate, system.time),
+                "unit": unit,
+            },
             "coordinates": certificate.coordinates,
             "assumptions": sentences(certificate.granted),
         }
@@ -135,10 +134,6 @@ def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | N
         if dict(certificate.gains.get(name, {})) != designed.get(name):
             return f"is about other gains of {name} than the designed ones"
     return None
-
-
-def _sample_time(period: Fraction | None) -> SampleTime | None:
-    return None if period is None else SampleTime(exact=exact_text(period))
 
 
 def _timing(spec: InteractionDesignSpec) -> str | None:

@@ -1,4 +1,4 @@
-"""Whether what was deployed is what is exported with a certificate: bytes against bytes."""
+"""Comparison of deployed files with the export of a certificate, byte for byte."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LARGEST_BYTES = 2**22
 _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
 # The law and its monitor, not the self-test, which a robot may do without.
 _LAW = re.compile(r"(?<!_test)\.[hc]$")
-# How much of a line is shown.
+# Characters of a line that a message shows.
 _SHOWN = 100
 
 
@@ -32,12 +32,12 @@ class DeployedFiles:
 
     compared: tuple[Path, ...]
     differences: tuple[str, ...]  # Each begins with the name of its file
-    others: tuple[Path, ...]  # Other files of the folder
+    others: tuple[Path, ...]  # Other files in the folder and below it, relative to it
 
     @property
     def left_out(self) -> str:
         """Text on what was not compared."""
-        return ", ".join(["how it is compiled", *(file.name for file in self.others)])
+        return ", ".join(["how it is compiled", *(file.as_posix() for file in self.others)])
 
 
 def compare_deployed(
@@ -56,8 +56,8 @@ def compare_deployed(
         for end in format_of(name).files
     }
     whole = place.is_dir()
-    files = sorted(path for path in place.iterdir() if path.is_file()) if whole else [place]
-    known = [file for file in files if file.name in formats]
+    files = sorted(path for path in place.rglob("*") if path.is_file()) if whole else [place]
+    known = [file for file in files if file.name in formats and (file.parent == place or not whole)]
     if not (whole or known):
         names = ", ".join(sorted({*formats.values()}))
         raise NrsDesignError(
@@ -67,7 +67,7 @@ def compare_deployed(
             "it was exported with",
         )
     export = _export(spec, certificate, place)
-    # A folder has the law itself, whatever else it has.
+    # A folder must hold the law itself.
     there = {formats[file.name] for file in known} | ({"c"} if whole else set())
     exported = {
         f"{spec.name}{end}": content
@@ -80,8 +80,14 @@ def compare_deployed(
         told += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
     # The certificate is read, not compared.
     aside = {*known, place / f"{spec.name}.cert.json"}
-    others = tuple(file for file in files if file not in aside)
-    return DeployedFiles((*known,), (*told,), others)
+    others = dict.fromkeys(_visible(file.relative_to(place)) for file in files if file not in aside)
+    return DeployedFiles((*known,), (*told,), (*others,))
+
+
+def _visible(file: Path) -> Path:
+    """Return a path up to its first hidden folder, which stands for all files in it."""
+    hidden = (k for k, part in enumerate(file.parts[:-1], 1) if part.startswith("."))
+    return Path(*file.parts[: next(hidden, None)])
 
 
 def _export(spec: InteractionDesignSpec, certificate: Certificate, place: Path) -> Export:
@@ -114,8 +120,8 @@ def _differs(file: Path, exported: Mapping[str, bytes]) -> Iterator[str]:
     if b"\0" in wanted:
         yield "it differs (a library in it must be what the compiler here makes of its sources)"
         return
-    lines = enumerate(zip_longest(found.split(b"\n"), wanted.split(b"\n"), fillvalue=b""), 1)
-    number, differing = next((n, pair) for n, pair in lines if pair[0] != pair[1])
+    pairs = zip_longest(found.split(b"\n"), wanted.split(b"\n"), fillvalue=b"(end of the file)")
+    number, differing = next((n, pair) for n, pair in enumerate(pairs, 1) if pair[0] != pair[1])
     # Quoted: a line break or an escape is seen.
     has, should = (repr(line[:_SHOWN].decode("ascii", "backslashreplace")) for line in differing)
     yield f"line {number}: it has {has}, and the export has {should}"

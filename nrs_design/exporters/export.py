@@ -14,13 +14,7 @@ from nrs_design.exporters.build import build_record, build_unproved, find_mismat
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed, interaction_of
-from nrs_design.pipeline.runs import (
-    Recorded,
-    run_certification,
-    run_design,
-    run_kept,
-    run_recorded,
-)
+from nrs_design.pipeline.runs import Recorded, run_certification, run_design, run_kept, run_recorded
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -33,11 +27,11 @@ class Export:
     # Verdict on the purpose of the files. Rejected: the given certificate does not hold, or does
     # not cover the design.
     verdict: str
-    record: ExportRecord | None  # Of a proved design, or of an unproved one on request
+    record: ExportRecord | None  # Record of a proved design or, on request, of an unproved one
     certificate: Certificate | None  # The proof of the record, or what refutes it
     reason: str = ""  # Reason without a proof; else empty
     design: ControllerDesign | None = None  # The gains of the record
-    spec: InteractionDesignSpec | None = None  # What the record is of
+    spec: InteractionDesignSpec | None = None  # Spec of the record
     designed: Designed | None = None  # The plant and the gains of a proved design
 
     @property
@@ -74,7 +68,14 @@ def export_design(
     the proof must be about the sampled loop.
     """
     spec = interaction_of(loaded, "has no gains to export")
-    _check_one_period(loaded, spec)
+    if spec.sampling is not None and spec.sampling.round > 1:
+        raise DesignError(
+            "an export has one period for all operations of its law, and the proof with "
+            "outer_period runs some of them at another",
+            path=loaded.path,
+            remedy="leave outer_period out to export; the report has the gains",
+            at=("sampling", "outer_period"),
+        )
     period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
         _certified_here(loaded, recorded, progress)
@@ -107,17 +108,6 @@ def export_proof(
     verdict = str(result.certification.verdict)
     reason = "" if verdict == "proved" else f"nothing is proved of the matrices: {verdict}"
     return Export(verdict, None, result.certificate, reason)
-
-
-def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
-    if spec.sampling is not None and spec.sampling.round > 1:
-        raise DesignError(
-            "an export has one period for all operations of its law, and the proof with "
-            "outer_period runs some of them at another",
-            path=loaded.path,
-            remedy="leave outer_period out to export; the report has the gains",
-            at=("sampling", "outer_period"),
-        )
 
 
 def _kept_or_anew(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Result:
@@ -165,7 +155,7 @@ def _proved(designed: Designed, certificate: Certificate) -> Export:
 
 
 def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:
-    """Return when a processor runs the law, in s: as the spec says, or as is asked for."""
+    """Return the sample time of the spec, or the requested one, in s."""
     said = None if spec.sampling is None else spec.sampling.period.exact
     if asked is not None and said is not None and asked != said:
         raise DesignError(

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
+from operator import mul
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from nrs_design.proof.evidence import Shows
 from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.build_plant import build_environments
+from nrs_design.spec.build_plant import build_environments, build_plant
 from nrs_design.spec.controllers import contact_names
 
 # Longer than any processor runs.
@@ -40,16 +41,16 @@ class MonitorLimits:
 
     period: Fraction  # Sample time in s
     torque: Fraction  # Largest torque in N m
-    command: Fraction | None  # Where the command saturates; None where the spec does not say
+    command: Fraction | None  # Saturation limit; None without one in the spec
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # Bounds on torque and angle; None without them in the spec
     # Region of decay with a saturating command; None without a proof of one.
     region: MonitoredRegion | None
-    # How far the joint moves, at the limit of its velocity, between two torques that are read.
+    # Travel of the joint between two torque readings, at the velocity limit.
     travel: Fraction
-    left_out: tuple[str, ...]  # What is not monitored, and why
+    left_out: tuple[str, ...]  # Unmonitored effects, with reasons
 
 
 def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
@@ -134,13 +135,13 @@ class MonitoredRegion:
     stiffness: tuple[Fraction, Fraction]  # The least and the largest, N m/rad
     ways: tuple[Fraction, Fraction]  # The least and the largest a, in 1/s
     gains: tuple[Fraction, Fraction]  # The least and the largest Km
-    samples: int  # How many angles before the present one are needed
+    samples: int  # Number of earlier angles that the test needs
 
 
 def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     """Return the region of the proof, or why it is not monitored; the law is the one that ships."""
-    certificate, spec, designed = export.certificate, export.spec, export.designed
-    if certificate is None or spec is None or designed is None:
+    certificate, spec, design = export.certificate, export.spec, export.design
+    if certificate is None or spec is None or design is None:
         return _NONE
     shown = (item for item in certificate.statements if item.shows is Shows.REGION)
     evidence, system = next(shown, None), certificate.system
@@ -158,12 +159,12 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     known |= {f"F {j} before [N*m]": f"torque {j}" for j in range(1, oldest[1] + 1)}
     if spec.offset != "none" or any(name not in known for name in system.states):
         return "a state of it counts from a rest that the monitor does not know"
-    if any(c.law.commands == "position" for c in designed.design.controllers):
+    if any(c.law.commands == "position" for c in design.controllers):
         return "under position and force control it counts from a rest that it does not know"
     rows = _factor(*evidence.quadratic)
     if rows is None:
         return "single precision loses it"
-    T, motor = system.sample_time, designed.plant.actuator_ranges
+    T, motor = system.sample_time, build_plant(spec).actuator_ranges
     ways = [
         E / (tau * (1 - E))
         for tau in (motor.time_constant.low, motor.time_constant.high)
@@ -190,12 +191,9 @@ def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...]
     unit = np.array([[float(v) for v in row] for row in wanted]) / np.outer(scale, scale)
     U = np.linalg.cholesky(unit * float(1 + ROOM)).T * scale
     rows = tuple(tuple(to_float32(Fraction(float(v))) for v in row) for row in U)
-    n = len(rows)
+    columns = [*zip(*rows, strict=True)]
     more = [
-        [
-            sum(rows[k][i] * rows[k][j] for k in range(n)) - (1 + ROOM / 2) * wanted[i][j]
-            for j in range(n)
-        ]
-        for i in range(n)
+        [sum(map(mul, a, b)) - (1 + ROOM / 2) * v for b, v in zip(columns, row, strict=True)]
+        for a, row in zip(columns, wanted, strict=True)
     ]
     return rows if is_positive_definite(RationalMatrix.from_rows(more).numerators) else None

@@ -1,4 +1,4 @@
-"""A law that a processor runs, and what is required of its caller: start-up, signs and frames.
+"""A law that a processor runs, with requirements on its caller: start-up, signs and frames.
 
 With the start-up requirements, the first samples of a program are those of the proof.
 """
@@ -22,7 +22,7 @@ class Program:
 
     record: ExportRecord  # Gains and proof
     law: StepLaw  # Its operations
-    names: CNames  # Of its spec
+    names: CNames  # Names in C
 
     @property
     def about(self) -> tuple[str, ...]:
@@ -66,7 +66,7 @@ TWICE = (
 
 
 def start_lines(law: StepLaw) -> Iterator[str]:
-    """Yield the start-up requirements of a program other than starting at rest."""
+    """Yield the start-up requirements of a program in addition to a start at rest."""
     inputs = {value.name for value in law.inputs}
     if "position" in inputs:
         differentiates = any(state.name == "error_before" for state in law.states)

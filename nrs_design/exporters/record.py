@@ -171,10 +171,7 @@ def dump_record(record: ExportRecord) -> str:
 def record_schema_text() -> str:
     """Return the JSON Schema (draft 2020-12) that every record keeps, as the text of a file."""
     described = ExportRecord.model_json_schema(mode="serialization")
-    head = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "nrs-design export",
-    }
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "nrs-design export"}
     return json.dumps(head | described | head, indent=2) + "\n"
 
 

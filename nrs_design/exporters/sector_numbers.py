@@ -19,7 +19,7 @@ from nrs_design.proof.bounds import lower, upper
 
 ROUNDING = Fraction(17, 2**27)
 SLACK = Fraction(1, 2**20)
-# No operation on what is not below it loses anything to subnormal numbers.
+# Operations on larger numbers lose nothing to subnormal numbers.
 TINY = Fraction(1, 2**100)
 # Violations that a header tells of, as stiffness over the range; the largest angle there, in rad.
 FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(6, 5), Fraction(3, 2), Fraction(2), Fraction(4))
@@ -123,7 +123,7 @@ def _formula(sector: Sector) -> str:
 
 
 def _moving(sector: Sector) -> str:
-    """Say what a surface that moves all the same costs."""
+    """Return the additional need for a moving surface, as text."""
     if not sector.surface_speed:
         return ""
     return (

@@ -90,7 +90,7 @@ def _words(count: int, size: int, names: CNames, of: str) -> tuple[str, ...]:
 
 def draw_cases(law: StepLaw, count: int = COUNT) -> StepCases:
     """Draw inputs and states, always the same ones, and compute a step of each."""
-    # The bits of this generator are fixed; what NumPy makes of them may change.
+    # NumPy promises the raw bits of this generator only, not its distributions.
     draw = np.random.PCG64(SEED).random_raw
     wild = draw(count) % 4 == 0
     mode = (draw(count) % (len(law.modes) + wild).astype(np.uint64)).astype(np.uint32)

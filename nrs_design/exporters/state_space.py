@@ -55,21 +55,19 @@ def _of_mode(system: SwitchedSystem, index: int, mode: Mode) -> Any:
     dt: float | bool = 0
     if system.time is Time.DISCRETE:
         dt = True if system.sample_time is None else float(system.sample_time)
-    return _state_space(A, B, np.eye(n), np.zeros((n, B.shape[1])), dt, name=_plain(mode.name))
+    return _state_space(mode.name, A, B, np.eye(n), np.zeros((n, B.shape[1])), dt)
 
 
 def _of_part(part: LinearPart) -> Any:
     outputs = [name for name, _ in part.outputs]
     parts = part.A, part.B, part.C, part.D
-    return _state_space(*parts, 0, name=_plain(part.name), inputs=[part.input[0]], outputs=outputs)
+    return _state_space(part.name, *parts, 0, inputs=[part.input[0]], outputs=outputs)
 
 
-def _state_space(A: Any, B: Any, C: Any, D: Any, dt: float | bool, **names: Any) -> Any:
+def _state_space(name: str, *matrices: Any, **labels: Any) -> Any:
+    """Return the state space of A, B, C, D and dt."""
     from nrs_design.control_library import control
 
-    return control.StateSpace(A, B, C, D, dt, remove_useless_states=False, **names)
-
-
-def _plain(name: str) -> str:
-    """Return a name that python-control takes: it has its own use for points."""
-    return name.replace(".", "_")
+    # Points in names have a meaning of their own in python-control.
+    plain = name.replace(".", "_")
+    return control.StateSpace(*matrices, remove_useless_states=False, name=plain, **labels)

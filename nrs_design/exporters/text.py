@@ -27,7 +27,7 @@ WIDTH = 100
 
 @dataclass(frozen=True, slots=True)
 class CNames:
-    """What belongs to one law begins with its name."""
+    """Identifiers in C of one law, which begin with the name of its spec."""
 
     spec: str  # Name of the spec
 
@@ -141,7 +141,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        # C and Python are no markup; what goes into XML and HTML says how it is escaped.
+        # C is no markup; templates of XML and HTML name their escapes.
         autoescape=False,
     )
     found.filters |= {

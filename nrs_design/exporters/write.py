@@ -15,12 +15,12 @@ from nrs_design.ownership import check_name, write_certificate
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Export
 
-# Of a file, such as .txt or .h5; a version of a folder, such as .2, is not one.
+# Ending of a file, such as .txt or .h5, but no version of a folder, such as .2.
 _ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
 
 
 def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
-    """Return where each file of a format goes in a folder, by its ending.
+    """Return the path of each file of a format in a folder, by its ending.
 
     Where the format has one file only, `out` may be that file. An `OutputError` if a file seems to
     be meant that is none of this format.
@@ -44,25 +44,15 @@ def places(format_: Format, name: str, out: Path) -> dict[str, Path]:
     return files
 
 
-def check_places(format_: Format, files: Mapping[str, Path], name: str | None = None) -> None:
-    """Refuse to overwrite a link, a file of another format, or a file of another spec.
-
-    So do a link, a file of another format, and one that says that it is another spec's.
-    """
+def check_places(format_: Format, files: Mapping[str, Path], name: str) -> None:
+    """Refuse to overwrite a link, a file of another format, or a file of another spec."""
     for ending, path in files.items():
         if path.parent.exists() and not path.parent.is_dir():
             raise OutputError(
                 "is a file, not a folder", path=path.parent, remedy="choose another --out"
             )
         check_place(path, format_.files[ending])
-        if name is not None:
-            check_name(name, path)
-
-
-def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[str, bytes]) -> None:
-    """Write all files of an export, or none."""
-    check_places(format_, files)
-    write_outputs([(path, contents[end], format_.files[end]) for end, path in files.items()])
+        check_name(name, path)
 
 
 def write_export(
@@ -75,5 +65,6 @@ def write_export(
     contents = rendered(format_, result)
     if proof is not None and result.certificate is not None:
         write_certificate(result.certificate, spec, proof)
-    write_files(format_of(format_), files, contents)
+    kinds = format_of(format_).files
+    write_outputs([(path, contents[end], kinds[end]) for end, path in files.items()])
     return remarks_on(format_, contents)

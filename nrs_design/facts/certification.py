@@ -13,25 +13,42 @@ from nrs_design.proof.bounds import lower_float, upper_float
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.radius import RadiusBounds
-    from nrs_design.search.certification import Certification
     from nrs_design.search.margin import Bracket, MarginBrackets
-    from nrs_design.spec import Spec
 
 
 def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     """Return the facts of a decision on stability under switching."""
-    found, certificate = result.certification, result.certificate
+    from nrs_design.certificates.bounds import bounds_summary
+    from nrs_design.certificates.goals import certified_goals
+
+    found, certificate, spec = result.certification, result.certificate, result.loaded.spec
+    system, evidence = found.system, found.evidence
+    rate = None if evidence is None else evidence.proved_rate(system)
+    continuous = system.time == "continuous"
     return {
         **result.loaded.facts,
-        **_stated(found, certificate, result.loaded.spec),
+        "verdict": str(found.verdict),
+        "refuted_in": found.refuted_in,
+        "common_quadratic": str(found.common_quadratic),
+        "claim": evidence.claim(system) if evidence else None,
+        "statements": [{"kind": s.kind, "claim": s.claim(system)} for s in found.statements],
+        "bounds": bounds_summary(system, found.statements),
+        "goals": [
+            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
+            for g in certified_goals(spec, certificate)
+        ],
         "method": found.method,
-        **rate_facts(found),
-        **_described(found, None if result.designed is None else result.designed.spec.coordinates),
+        **_number("decay_rate", rate, lower_float if continuous else upper_float),
+        "decay_rate_limit": found.rate_limit,
+        "decay_rate_unit": "1/s" if continuous else "1 per step",
+        "time": str(system.time),
+        "coordinates": None if result.designed is None else result.designed.spec.coordinates,
+        "states": list(system.states),
+        "modes": [mode.name for mode in system.modes],
         "gains": dict(certificate.gains) if certificate else None,
         "attempts": [
             {
@@ -46,65 +63,6 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
         "certificate": None if path is None else str(path),
         "certificate_id": certificate.id if certificate else None,
     }
-
-
-def shown_facts(certificate: Certificate, spec: Spec) -> dict[str, Any]:
-    """Return those facts of a decision that its certificate shows by itself."""
-    return {
-        **_stated(certificate, certificate, spec),
-        **_proved_rate(certificate),
-        **_described(certificate, certificate.coordinates),
-        "gains": dict(certificate.gains),
-        "assumptions": list(sentences(certificate.granted)),
-        "certificate_id": certificate.id,
-    }
-
-
-def _described(found: Certification | Certificate, coordinates: str | None) -> dict[str, Any]:
-    system = found.system
-    return {
-        "time": str(system.time),
-        "coordinates": coordinates,
-        "states": list(system.states),
-        "modes": [mode.name for mode in system.modes],
-    }
-
-
-def _stated(
-    found: Certification | Certificate, certificate: Certificate | None, spec: Spec
-) -> dict[str, Any]:
-    from nrs_design.certificates.bounds import bounds_summary
-    from nrs_design.certificates.goals import certified_goals
-
-    system, evidence = found.system, found.evidence
-    return {
-        "verdict": str(found.verdict),
-        "refuted_in": found.refuted_in,
-        "common_quadratic": str(found.common_quadratic),
-        "claim": evidence.claim(system) if evidence else None,
-        "statements": [{"kind": s.kind, "claim": s.claim(system)} for s in found.statements],
-        "bounds": bounds_summary(system, found.statements),
-        "goals": [
-            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
-            for g in certified_goals(spec, certificate)
-        ],
-    }
-
-
-def rate_facts(certification: Certification) -> dict[str, Any]:
-    """Return the facts of the proved rate and its limit."""
-    continuous = certification.system.time == "continuous"
-    return {
-        **_proved_rate(certification),
-        "decay_rate_limit": certification.rate_limit,
-        "decay_rate_unit": "1/s" if continuous else "1 per step",
-    }
-
-
-def _proved_rate(found: Certification | Certificate) -> dict[str, Any]:
-    evidence, system = found.evidence, found.system
-    rate = None if evidence is None else evidence.proved_rate(system)
-    return _number("decay_rate", rate, lower_float if system.time == "continuous" else upper_float)
 
 
 def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What is weaker than in a base folder, such as a checkout of the branch to merge into.
+"""Weaker requirements than in a base folder, such as a checkout of the branch to merge into.
 
 The gate proves what specs ask for, so a spec that asks for less passes more easily. The base has
 the same paths; it is only read.
@@ -62,7 +62,7 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
                 path=path,
                 remedy="run the command where the paths begin in both folders",
             )
-        # A link to the base, of somebody who wants to be compared with what is there.
+        # A link to the base would compare the base with itself.
         if os.path.commonpath([here, os.path.realpath(path)]) != here:
             raise NrsDesignError(
                 "is a link that leads out of the working folder",
@@ -75,9 +75,12 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
 def compare_with_base(
     outcome: GateOutcome, paths: Sequence[Path], base: Path, lock: Path
 ) -> GateOutcome:
-    """Add what is weaker as obligations that are not fulfilled, and list what else has changed."""
-    there = find_specs_if_any(base_paths(paths, base))
-    entries = _locked(base, lock)
+    """Add a broken obligation for each weaker requirement, and list all other changes."""
+    there = _specs_if_any(base_paths(paths, base))
+    # By path from the root of the base.
+    folder = Path(os.path.relpath(lock)).parent
+    locked = read_lock_if_any(base / os.path.relpath(lock)).specs
+    entries = {os.path.normpath(folder / entry.path): entry for entry in locked}
     here = {Path(os.path.relpath(spec.path)): spec for spec in outcome.specs}
     found: dict[Path, list[Change]] = {}
     gone: list[SpecOutcome] = []
@@ -85,13 +88,14 @@ def compare_with_base(
         name = Path(os.path.relpath(path, base))
         now = here.get(name) or _moved(path, there, base, outcome)
         if now is None:
-            gone.append(_gone(name))
+            lost = Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE)
+            gone.append(SpecOutcome(name, (lost,)))
             continue
         entry = entries.get(os.path.normpath(name))
         if os.path.lexists(now.path) or is_there(now.path):
             found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now, (base / lock).parent)]
         else:
-            # It is an outcome, since the lock file here names it still.
+            # The spec is gone, but the lock file here still names it.
             found[now.path] = [Change((), _GONE, True)]
     specs = [_with(spec, found.get(spec.path, ())) for spec in outcome.specs]
     weaker = sum(change.weaker for changes in found.values() for change in changes) + len(gone)
@@ -104,25 +108,17 @@ def compare_with_base(
     return replace(outcome, specs=(*specs, *gone), changes=BaseChanges(base, weaker, others))
 
 
-def find_specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
+def _specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
     """List the specs of files and folders; a folder may have none."""
     found: list[Path] = []
     for path in paths:
         try:
             found += find_specs([path])
         except NrsDesignError as error:
-            # That of a folder without specs; what cannot be read is another.
+            # A folder without specs raises the base class; unreadable files raise a subclass.
             if type(error) is not NrsDesignError:
                 raise
     return tuple(dict.fromkeys(found))
-
-
-def _locked(base: Path, lock: Path) -> dict[str, LockedSpec]:
-    """Return what the base has locked, by path from its root."""
-    file = base / os.path.relpath(lock)
-    folder = Path(os.path.relpath(lock)).parent
-    entries = read_lock_if_any(file).specs
-    return {os.path.normpath(folder / entry.path): entry for entry in entries}
 
 
 def _moved(
@@ -145,12 +141,8 @@ def _name_of(path: Path) -> str | None:
         return None
 
 
-def _gone(name: Path) -> SpecOutcome:
-    return SpecOutcome(name, (Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE),))
-
-
 def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
-    """Yield in what the spec of the base differs from the one here."""
+    """Yield the differences between the spec of the base and the spec here."""
     try:
         after = read_spec(now.path)
     except NrsDesignError:
@@ -180,7 +172,7 @@ def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterat
 
 
 def _of_proof(before: Path, after: Path) -> Iterator[Change]:
-    """Yield what the certificate of the base shows and this one does not, and what is shown more.
+    """Yield the differences between two certificates; a lost statement is weaker.
 
     That of the base is only read: whoever made it has checked it.
     """
@@ -204,7 +196,7 @@ def _read(file: Path) -> Verification:
 
 
 def _shown(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fraction, str]]]:
-    """Yield what a certificate shows by a name: a number, of which more is more, and in words."""
+    """Yield name, number and text of each proved fact; a larger number is a stronger fact."""
     if certificate is None:
         return
     system, evidence = certificate.system, certificate.evidence

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +41,7 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
 
 
-# What is not judged lets no gate pass.
+# A goal that is not judged fails the gate.
 _ENDS = {
     GoalStanding.MET: Status.MET,
     GoalStanding.NOT_JUDGED: Status.INCONCLUSIVE,
@@ -59,25 +58,19 @@ class Examiner:
     def obligation(
         self, rule: rules.Rule, subject: str, status: Status, message: str, keys: Keys
     ) -> Obligation:
-        """Return an obligation about what stands in this spec at some keys; one line."""
+        """Return an obligation about the value at some keys of this spec; one line."""
         at = self.loaded.place(*keys)
         return Obligation(rule, self.loaded.path, subject, status, message, at.line, at.column)
 
     def keys_of_mode(self, name: str) -> Keys:
         """Return the keys of a given mode, or of the controller of an assembled mode."""
-        # Labels have no slash: what follows it names the contact or the corner of a box.
-        label = name.partition("/")[0]
-        index = self._modes.get(label)
-        return ("controllers", label) if index is None else ("modes", index)
-
-    @cached_property
-    def _modes(self) -> Mapping[str, int]:
-        spec = self.loaded.spec
-        modes = spec.modes if spec.kind == "switched-system" else ()
-        return {mode.name: index for index, mode in enumerate(modes)}
+        # Labels have no slash: behind a slash stands the contact, or the corner of a box.
+        label, spec = name.partition("/")[0], self.loaded.spec
+        modes = [mode.name for mode in spec.modes] if spec.kind == "switched-system" else []
+        return ("modes", modes.index(label)) if label in modes else ("controllers", label)
 
     def keys_of_goal(self, controller: str, key: str) -> Keys:
-        """Return the keys of a goal of a controller: its own, or that of the whole spec."""
+        """Return the keys of a goal of a controller, or of the same goal of the whole spec."""
         own: Keys = ("controllers", controller, "goals", key)
         return ("goals", key) if node_at(self.loaded.root, own) is None else own
 
@@ -94,7 +87,7 @@ class Examiner:
         obligations: Iterable[Obligation],
         cautions: Iterable[Caution],
     ) -> SpecOutcome:
-        """Return what was found about a spec whose switched system was decided.
+        """Return the outcome of a spec whose switched system was decided.
 
         File and certificate are what was written or re-checked; None if nothing was shown.
         """
@@ -144,7 +137,7 @@ class Examiner:
         return (*modes, self.system(status, message))
 
     def system(self, status: Status, message: str) -> Obligation:
-        """Return NRS102: how the search for a proof of the whole system ended."""
+        """Return NRS102: the verdict on the whole system."""
         return self.obligation(rules.SWITCHING_STABLE, "system", status, message, ("switching",))
 
     def _mode(
@@ -181,12 +174,9 @@ class Examiner:
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""
-        holds = fault is None
-        said = "holds, checked exactly" if holds else f"is rejected: {fault}"
-        message = f"{file.as_posix()} {said}"
-        return self.obligation(
-            rules.CERTIFICATE_HOLDS, "certificate", _met(holds), message, ("name",)
-        )
+        said = "holds, checked exactly" if fault is None else f"is rejected: {fault}"
+        status, message = _met(fault is None), f"{file.as_posix()} {said}"
+        return self.obligation(rules.CERTIFICATE_HOLDS, "certificate", status, message, ("name",))
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
@@ -196,7 +186,7 @@ class Examiner:
 
     @property
     def _missed(self) -> Status:
-        """What a loop that is unstable in kept contact decides: where it may be lost, nothing."""
+        """Status of a loop that is unstable in kept contact; open where contact may be lost."""
         return Status.INCONCLUSIVE if self._in_contact else Status.MISSED
 
     @property
@@ -254,7 +244,7 @@ class Examiner:
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for every goal to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):
-            # What wants no number is said whole already.
+            # The text of the goal `largest` is complete without a number.
             wanted = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
             subject, said = f"system: {goal.key}", goal.said + wanted
@@ -280,8 +270,8 @@ class Examiner:
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
         message = f"simulated: {error.message} (no run, so no limit is met)"
-        place = ("scenarios", name)
-        return self.obligation(rules.SCENARIO_LIMIT, name, Status.MISSED, message, place)
+        keys: Keys = ("scenarios", name)
+        return self.obligation(rules.SCENARIO_LIMIT, name, Status.MISSED, message, keys)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
@@ -312,21 +302,18 @@ class Examiner:
             yield self.caution(message, "kind")
 
     def limits(self, certificate: Certificate | None) -> Iterator[Caution]:
-        """Yield that a limit of the torque is not shown to be kept, and no goal asks for that."""
+        """Yield a caution if the proved torque exceeds its limit without a goal for the torque."""
         spec = self.loaded.spec
         if certificate is None or spec.kind != "interaction-design":
             return
         if spec.goals is not None and spec.goals.peak_torque is not None:
             return
         bound = bound_on(certificate.system, certificate.statements, "force")
-        if (
-            bound is not None
-            and bound.output.limit is not None
-            and bound.level > bound.output.limit
-        ):
+        limit = None if bound is None else bound.output.limit
+        if bound is not None and limit is not None and bound.level > limit:
             unit = bound.output.unit
             message = (
-                f"the limit of {lower(bound.output.limit)} {unit} is not shown to be kept: up to "
+                f"the limit of {lower(limit)} {unit} is not shown to be kept: up to "
                 f"{upper(bound.level)} {unit} are proved under all disturbances at once; "
                 "`goals: peak_torque` asks for it"
             )
@@ -351,7 +338,7 @@ def _met(reached: bool) -> Status:
 
 
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:
-    """Return the certified rate as text and its name; None where nothing is proved."""
+    """Return text and name of the certified rate; None without a proof."""
     if certificate is None or certificate.evidence is None:
         return None, None
     time, rate = certificate.system.time, certificate.evidence.proved_rate(certificate.system)

@@ -16,7 +16,8 @@ SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
 # The key of a spec: at the beginning of a line, or of a mapping in one line; indented if quoted.
 _KIND = re.compile(
-    rf"^\ufeff?(?:\s*\{{?\s*(?=[\"'])|\{{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?({'|'.join(SPEC_KINDS)})(?![\w./-])",
+    r"^\ufeff?(?:[ \t]*\{?[ \t]*(?=[\"'])|\{\s*)?[\"']?kind[\"']?\s*:\s*[\"']?"
+    rf"({'|'.join(SPEC_KINDS)})(?![\w./-])",
     re.MULTILINE,
 )
 
@@ -40,11 +41,11 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
             )
         for spec in specs:
             found.setdefault(os.path.realpath(spec), spec)
-    return tuple(axis for spec in sorted(found.values()) for axis in _axes_at(spec))
+    return tuple(axis for spec in sorted(found.values()) for axis in axes_or_whole(spec))
 
 
 def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
-    """List the hidden folders and the links to folders below folders, which nobody looks into."""
+    """List hidden folders, and links to folders, below the given folders."""
     return tuple(
         sorted(
             Path(folder, name)
@@ -71,8 +72,8 @@ def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
     )
 
 
-def _axes_at(spec: Path) -> tuple[Path, ...]:
-    """Return the axes of a spec with several; that a file is wrong shows where it is read."""
+def axes_or_whole(spec: Path) -> tuple[Path, ...]:
+    """Return the axes of a spec with several axes; else, or of a wrong file, the spec itself."""
     try:
         return axes_at(spec)
     except SpecError:

@@ -1,4 +1,4 @@
-"""``nrs.lock``: which specs were examined, and how every obligation that needs a design ended."""
+"""``nrs.lock``: examined specs, and the status of each obligation that needs a design."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ import os
 import posixpath
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
     Field,
-    SerializerFunctionWrapHandler,
     ValidationError,
     model_serializer,
     model_validator,
@@ -24,10 +23,13 @@ from nrs_design.errors import CertificateError
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating import rules
 
+if TYPE_CHECKING:
+    from pydantic import SerializerFunctionWrapHandler
+
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
 MAX_BYTES = 32 * 2**20
 MAX_SPECS = 10_000
-# What --locked decides itself; every other obligation is locked as it ended.
+# Rules that --locked decides again; the status of every other obligation is locked.
 DECIDED_AGAIN = frozenset(
     {
         rules.SPEC,
@@ -76,15 +78,13 @@ class LockedGoal(_Frozen):
 
     rule: str
     subject: str
-    # What no exact check decides is never proved or refuted; see `Status`.
+    # An exact check proves or refutes, and is made again; see `Status`.
     status: Literal["met", "inconclusive", "missed", "error"]
     message: str
 
     @model_validator(mode="after")
     def _check_rule(self) -> LockedGoal:
-        if self.rule not in rules.RETIRED and (
-            self.rule not in rules.RULES or rules.RULES[self.rule] in DECIDED_AGAIN
-        ):
+        if self.rule not in rules.RULES or rules.RULES[self.rule] in DECIDED_AGAIN:
             raise ValueError("this rule is not one that is locked")
         return self
 
@@ -94,13 +94,8 @@ class LockedRemark(_Frozen):
 
     message: str
     at: list[str]  # Keys that lead to its place in the spec
-    # As of a `Caution`, three digits of it: the last ones are of a processor.
+    # Three digits of `Caution.beyond`: further digits differ between processors.
     beyond: float = Field(gt=0, allow_inf_nan=False)
-
-
-def _skip_retired(goals: list[LockedGoal]) -> list[LockedGoal]:
-    """Return the goals of rules that there are: an older release locked others."""
-    return [goal for goal in goals if goal.rule not in rules.RETIRED]
 
 
 class LockedSpec(_Frozen):
@@ -116,7 +111,7 @@ class LockedSpec(_Frozen):
     rate: str | None
     certificate: LockedCertificate | None
     gains: dict[str, dict[str, str]]
-    goals: Annotated[list[LockedGoal], AfterValidator(_skip_retired)]
+    goals: list[LockedGoal]
     remark: LockedRemark | None = None
 
     @model_serializer(mode="wrap")
@@ -184,5 +179,5 @@ def read_lock(file: Path) -> Lock:
 
 
 def relative_to_lock(path: Path, lock: Path) -> str:
-    """Return a path as it stands in a lock file, with forward slashes."""
+    """Return a path relative to a lock file, with forward slashes."""
     return Path(os.path.relpath(path, lock.parent)).as_posix()

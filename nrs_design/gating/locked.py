@@ -41,7 +41,7 @@ RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
 _AS_LOCKED = "(as locked; not computed again)"
 
-# What a spec asks of its design: the id of a rule, and the subject.
+# Requirement on a design: id of the rule, and subject.
 Asked = tuple[str, str]
 _RESPONSES = ("transparency", "accuracy")
 # A design without margins has this in the place of all that is asked of controllers.
@@ -158,7 +158,7 @@ def _others(
 
 
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
-    """Yield what only a design can decide, as it ended when it was locked."""
+    """Yield the obligations that only a design decides, with their locked status."""
     for goal in entry.goals:
         # A run is named by its scenario: `NAME: torque`.
         run = goal.rule == SCENARIO_LIMIT.id
@@ -210,10 +210,10 @@ def _absent(path: Path, message: str) -> SpecOutcome:
 
 
 def find_missing(spec: Spec, locked: Mapping[Asked, str]) -> tuple[Asked, ...]:
-    """Return what a spec asks of its design, and is not locked, each with its status."""
+    """Return the requirements of a spec that the lock, with a status for each, lacks."""
     if spec.kind != "interaction-design":
         return ()
-    # What could not be judged stands for all that was asked of it, and is never met.
+    # A design without margins, or a failed run, stands for all its goals, and is never met.
     unjudged = {one for one, status in locked.items() if status != "met"}
     asked = () if _NO_MARGINS in unjudged else tuple(_of_controllers(spec))
     limits = (one for one in _of_scenarios(spec) if (one[0], one[1].split(":")[0]) not in unjudged)

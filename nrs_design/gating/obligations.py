@@ -1,4 +1,4 @@
-"""What the gate finds: obligations, by spec, each with its status and its place in the file."""
+"""Results of the gate: obligations by spec, each with a status and a place in the file."""
 
 from __future__ import annotations
 
@@ -58,18 +58,18 @@ class Status(StrEnum):
 class Obligation:
     """One thing that must hold for one spec."""
 
-    rule: Rule  # What must hold
+    rule: Rule  # The rule that must hold
     path: Path  # The spec, as it was named
-    subject: str  # What it must hold for: a mode, a controller, the system, a file
-    status: Status  # How it ended
-    message: str  # What was found; one line
+    subject: str  # Mode, controller, system or file that the rule is about
+    status: Status  # Result of the check
+    message: str  # Text of one line
     # line, column: place in the spec, counted from 1, as far as it is known.
     line: int | None = None
     column: int | None = None
 
     @property
     def fulfilled(self) -> bool:
-        """Whether it lets the gate pass."""
+        """Whether the gate passes with this status."""
         return self.status in (Status.PROVED, Status.MET)
 
     @property
@@ -83,11 +83,11 @@ class Caution:
     """Something doubtful that does not keep the gate from passing."""
 
     path: Path  # The spec, as it was named
-    message: str  # What is doubtful; one line
+    message: str  # Text of one line
     # line, column: place in the spec, counted from 1.
     line: int
     column: int
-    beyond: float = 0.0  # A value of the design over its limit; 0 where it has none
+    beyond: float = 0.0  # Ratio of a value of the design to its limit; 0 without a limit
     at: tuple[str | int, ...] = ()  # Keys that lead there, as far as they are known
 
 
@@ -111,7 +111,7 @@ class SpecOutcome:
     # verdict, common_quadratic: of the certification; None if there was none.
     verdict: str | None = None
     common_quadratic: str | None = None
-    # In which contact alone it is refuted, where that leaves its loss open.
+    # The contact that the refutation is about, where the loss of contact stays undecided.
     refuted_in: str | None = None
     rate: str | None = None  # Certified rate with six digits, rounded to its safe side
     # ``alpha`` (1/s, continuous time) or ``rho`` (per step, discrete time).
@@ -122,10 +122,10 @@ class SpecOutcome:
     # What the obligations are about: designed gains (float32, as exact decimals) by controller;
     # empty for given matrices.
     gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    # Of these gains, likewise.
+    # Units of these gains, by controller.
     units: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    # False for a spec that is valid and makes no claim about switching, such as a robot: there is
-    # no verdict, and nothing to lock.
+    # False for a valid spec without a claim about switching, such as a robot: without verdict and
+    # lock entry.
     certifiable: bool = True
     cautions: tuple[Caution, ...] = ()  # What is doubtful, and breaks no obligation
     # As `nrs_design.certificates.bounds.bounds_summary` gives them.
@@ -134,20 +134,20 @@ class SpecOutcome:
 
 @dataclass(frozen=True, slots=True)
 class BaseChanges:
-    """What differs from the specs of a base, beside what is weaker, which breaks an obligation."""
+    """Changes against the specs of a base."""
 
     base: Path  # Folder of the base
     weaker: int  # Number of obligations that it breaks
-    others: tuple[Caution, ...]  # What is stronger, or neither; versions
+    others: tuple[Caution, ...]  # Stronger requirements, neutral changes, versions
 
 
 @dataclass(frozen=True, slots=True)
 class GateOutcome:
-    """What one run of the gate found."""
+    """Result of one run of the gate."""
 
     specs: tuple[SpecOutcome, ...]  # In the order of their paths
-    notes: tuple[str, ...] = ()  # What a person should know beside it
-    changes: BaseChanges | None = None  # What differs from a base; None if it was not asked for
+    notes: tuple[str, ...] = ()  # Remarks on the run
+    changes: BaseChanges | None = None  # Changes against a base; None without --against
 
     @property
     def cautions(self) -> tuple[Caution, ...]:
@@ -188,28 +188,23 @@ class GateOutcome:
 
 def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutcome:
     """Return the outcome of a spec that an error stopped; an unforeseen one is a defect."""
-    if isinstance(error, NrsDesignError):
-        obligation = of_error(path, error)
-    else:
-        message = f"{type(error).__name__}: {error}"
-        obligation = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, _one_line(message))
-    return SpecOutcome(path, (obligation,), sha256)
-
-
-def of_error(path: Path, error: NrsDesignError) -> Obligation:
-    """Return the obligation of a spec that ended in an error, with the place and the remedy."""
+    if not isinstance(error, NrsDesignError):
+        message = _one_line(f"{type(error).__name__}: {error}")
+        defect = Obligation(INTERNAL, path, "nrs-design", Status.ERROR, message)
+        return SpecOutcome(path, (defect,), sha256)
     elsewhere = error.path is not None and error.path != path
     message = f"{error.location}: {error.message}" if elsewhere else error.message
     if error.remedy:
         message += f" ({error.remedy})"
-    message += error.more
+    message = _one_line(message + error.more)
     status = Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR
     place = (None, None) if elsewhere else (error.line, error.column)
-    return Obligation(RULES[error.rule], path, "spec", status, _one_line(message), *place)
+    found = Obligation(RULES[error.rule], path, "spec", status, message, *place)
+    return SpecOutcome(path, (found,), sha256)
 
 
 def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
-    """Count specs by verdict, or by why they have none."""
+    """Count specs by verdict, or by the reason for none."""
     none = {True: "without verdict", False: "with nothing to certify"}
     return Counter(spec.verdict or none[spec.certifiable] for spec in specs)
 

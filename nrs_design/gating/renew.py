@@ -54,7 +54,9 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         present = (spec for spec in outcome.specs if is_there(spec.path))
         examined = {relative_to_lock(spec.path, file): spec for spec in present}
         locked = read_lock_if_any(file).specs
-        old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
+        # The entry of an unchanged spec still holds if the spec has no verdict now.
+        still = {(p, s.sha256) for p, s in examined.items() if s.verdict is None}
+        old = [e for e in locked if e.path not in examined or (e.path, e.sha256) in still]
         gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
         written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
         # A spec that was renamed: its certificate is now found under the new name of the file.
@@ -66,8 +68,8 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         kept = [entry for entry in old if entry.path not in dropped]
         if kept or fresh or file.exists():
             entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
-            if (lock := Lock(specs=entries)) != read_lock_if_any(file) or not file.exists():
-                write_output(file, dump_lock(lock), replaces=LOCK)
+            if entries != locked or not file.exists():
+                write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
                 outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}
@@ -99,14 +101,9 @@ def _check_kept(spec: SpecOutcome) -> None:
     )
 
 
-def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
-    """Tell whether a spec is unchanged since it was locked, and has no verdict now."""
-    return spec.verdict is None and spec.sha256 == entry.sha256
-
-
-# A value that has no bound is so many times over its limit.
+# Ratio of an unbounded value to its limit.
 _MOST = 1e6
-# What is shown by no certificate is taken from a lock file on trust, so it is not proved there.
+# A lock file proves nothing: a status without a certificate is locked as met or missed.
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
 
 

@@ -1,4 +1,4 @@
-"""The catalogue of rules: what each finding means, and what to do about it.
+"""Catalogue of rules, with meaning and remedy of each finding.
 
 `rules.toml` holds the texts. Ids are stable: they stand in lock files, annotations, baselines of
 code scanners and in the ``rule`` of every error in `nrs_design.errors`. An id is never given a
@@ -20,8 +20,8 @@ class Rule:
 
     id: str  # Such as ``NRS102``
     title: str  # What should be the case, in a few words
-    explanation: str  # What the rule means and how it is decided
-    remedy: str  # What to do if it is broken
+    explanation: str  # Meaning of the rule, and the method that decides
+    remedy: str  # Advice for a broken rule
 
     @property
     def heading(self) -> str:
@@ -31,7 +31,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """One word that an obligation can end with: what it means, and what to do then."""
+    """Status of an obligation, with meaning and remedy."""
 
     word: str
     explanation: str
@@ -50,8 +50,6 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 WORDS: Mapping[str, Word] = MappingProxyType(
     {word: Word(word, **texts) for word, texts in _TABLE["words"].items()}
 )
-# Ids of rules that there were; none of them is ever given to another rule.
-RETIRED = frozenset({"NRS111"})
 
 SPEC = RULES["NRS001"]
 MODE_STABLE = RULES["NRS101"]

@@ -43,11 +43,11 @@ _Examine = Callable[[LoadedSpec, Progress], SpecOutcome]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Files:
-    """Where the files of a spec are: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
+    """Places of the files of a spec: ``NAME.cert.json`` and, on request, ``NAME.html``."""
 
     folder: Path  # For all of them
-    html: bool = True  # Whether reports are asked for, of what is new or not fulfilled
-    every_page: bool = False  # Whether they are of all specs
+    html: bool = True  # Write reports of new or broken specs
+    every_page: bool = False  # Write reports of all specs
     # The certificate that is locked for a spec, by the absolute path of the spec.
     locked: Mapping[Path, Recorded] = field(default_factory=dict)
 
@@ -110,11 +110,16 @@ def _examine_safely(
     loaded: LoadedSpec,
     progress: Progress,
 ) -> SpecOutcome:
-    """Return what is found about a spec, whatever goes wrong with it."""
+    """Return the outcome of a spec; every error becomes an outcome."""
     namesake, name = namesakes.get(loaded.path), loaded.spec.name
     try:
         if namesake is not None:
-            raise _shared_name(loaded, namesake)
+            place, remedy = loaded.place("name"), "give every spec a name of its own"
+            message = (
+                f"{namesake} is named {name!r} too, and their files would overwrite each other"
+            )
+            fault = Fault(message, place.line, place.column, remedy)
+            raise SpecError.of((fault,), loaded.path)
         with about(getattr(loaded.spec, "axis", None)):
             return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
     except Exception as error:
@@ -147,13 +152,6 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
     return {path: paths[paths[0] == path] for paths in shared for path in paths}
 
 
-def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
-    place, remedy = loaded.place("name"), "give every spec a name of its own"
-    named = f"{namesake} is named {loaded.spec.name!r} too"
-    message = f"{named}, and their files would overwrite each other"
-    return SpecError.of((Fault(message, place.line, place.column, remedy),), loaded.path)
-
-
 def _examine(
     loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
 ) -> SpecOutcome:
@@ -166,7 +164,7 @@ def _examine(
     if files.html:
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
-    # Who sets how far a search goes wants one.
+    # Options that limit the search request a search.
     wanted = overrides not in (None, Overrides())
     kept = None if wanted else run_kept(loaded, files.recorded_for(loaded), progress)
     result = kept or run_certification(loaded, limits=limits, progress=progress)
@@ -198,9 +196,10 @@ def _examine(
     page = files.report(loaded.spec.name)
     fulfilled = all(item.fulfilled for item in obligations)
     renewed = kept is None or not fulfilled
-    if files.every_page or (files.html and (renewed or not _is_of(page, certificate))):
+    origin = origin_of(loaded.path, page)
+    if files.every_page or (files.html and (renewed or not _is_of(page, certificate, origin))):
         progress("report")
-        _write_page(result, page, analysis, blocked)
+        _write_page(result, page, origin, analysis, blocked)
     outcome = examiner.outcome(certification, file, certificate, obligations, cautions)
     if result.design is None:
         return outcome
@@ -247,28 +246,31 @@ def _judge_scenarios(
             yield from examiner.scenario(name, simulated)
 
 
-def _is_of(page: Path, certificate: Certificate | None) -> bool:
+def _is_of(page: Path, certificate: Certificate | None, origin: str) -> bool:
     """Tell whether a page is not there, or is as this program drew it of this certificate.
 
-    To draw it anew takes long.
+    To draw it anew takes long. Its spec must lie where it did.
     """
     if not page.exists() or certificate is None:
         return not page.exists()
     body, _, seal = page.read_text(encoding="utf-8", errors="replace").rpartition(_SEAL)
-    return certificate.id in body and seal == _seal(body)
+    return certificate.id in body and seal == _seal(body, origin)
 
 
-def _seal(body: str) -> str:
-    """Return the end of a page: what shows that nobody has changed it."""
-    return f"{hashlib.sha256(f'{__version__}{body}'.encode()).hexdigest()} -->\n"
+def _seal(body: str, origin: str) -> str:
+    """Return the end of a page, which is another if the page changes or its spec moves."""
+    return f"{hashlib.sha256(f'{__version__}{origin}{body}'.encode()).hexdigest()} -->\n"
 
 
 def _write_page(
-    result: Result, page: Path, analysis: DesignAnalysis | None, blocked: Blocked | None
+    result: Result,
+    page: Path,
+    origin: str,
+    analysis: DesignAnalysis | None,
+    blocked: Blocked | None,
 ) -> None:
     # Drawing costs seconds to import; a run without reports must not pay for it.
     from nrs_design.reporting import build_report, render_html
 
-    origin = origin_of(result.loaded.path, page)
     html = render_html(build_report(result, analysis, blocked=blocked), origin)
-    write_output(page, f"{html}{_SEAL}{_seal(html)}", replaces=PAGE)
+    write_output(page, f"{html}{_SEAL}{_seal(html, origin)}", replaces=PAGE)

@@ -53,6 +53,13 @@ def test_only_the_command_asked_for_is_imported(tmp_path):
     assert commands & set(facts["modules"]) == {"nrs_design.cli.verify"}
 
 
+@pytest.mark.parametrize("arguments", [("--help",), ("tune", "--help")])
+def test_help_loads_no_part_of_a_design(tmp_path, arguments):
+    _, facts = loaded_by(tmp_path, *arguments)
+    rooms = {name.split(".")[1] for name in facts["modules"] if name.startswith("nrs_design.")}
+    assert not {"pipeline", "design", "loop"} & rooms
+
+
 # What checks a certificate by itself: the program, the file format, the proof; and the series of
 # the second opinion on exponentials.
 CHECKING = (

@@ -42,6 +42,21 @@ def test_the_words_of_wrong_usage_are_printable(tmp_path):
     assert shown.replace("\n", "").isprintable()
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("chekc", "a.nrs.yaml"), "No such command 'chekc'"),
+        (("check", "--no-such", "a.nrs.yaml"), "No such option: --no-such"),
+        (("certify-switching", "a.nrs.yaml", "--budget", "much"), "'much' is no budget"),
+    ],
+)
+def test_wrong_usage_is_json_like_every_other_error(tmp_path, arguments, said):
+    document = document_of(*arguments, cwd=tmp_path, code=2)
+    (fault,) = document["faults"]
+    assert document["schema"] == "nrs-design/error/1"
+    assert said in fault["message"]
+
+
 @pytest.mark.slow
 def test_colour_on_a_terminal_unless_refused(tmp_path):
     (tmp_path / "a.nrs.yaml").write_text(f"{SWITCHED}key: 1\n")

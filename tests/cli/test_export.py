@@ -36,16 +36,9 @@ def contents():
     return {name: Path(name).read_bytes() for name in files()}
 
 
-@pytest.mark.parametrize(
-    ("out", "where", "proof"),
-    [
-        ((), "reports/soft-tissue.export.json", "reports/soft-tissue.cert.json"),
-        (("--out", "there"), "there/soft-tissue.export.json", "there/soft-tissue.cert.json"),
-        (("--out", "a/b.json"), "a/b.json", "a/soft-tissue.cert.json"),
-    ],
-)
-def test_export_writes_the_record_and_its_certificate(export, out, where, proof):
-    document = json.loads(export(SPEC, *out, "--json", code=0).stdout)
+def test_export_writes_the_record_and_its_certificate(export):
+    document = json.loads(export(SPEC, "--out", "there", "--json", code=0).stdout)
+    where, proof = "there/soft-tissue.export.json", "there/soft-tissue.cert.json"
     assert files() == sorted([where, proof])
     record = ExportRecord.model_validate_json(Path(where).read_text())
     checked = verify(Path(proof), read_spec(SPEC))
@@ -54,12 +47,6 @@ def test_export_writes_the_record_and_its_certificate(export, out, where, proof)
     assert record.spec.sha256 == read_spec(SPEC).sha256
     assert (document["schema"], document["verdict"]) == ("nrs-design/export/1", "proved")
     assert document["record"] == json.loads(Path(where).read_text())
-
-
-def test_given_certificate_is_used_and_not_written_again(export, certificate):
-    Path("mine.json").write_text(certificate)
-    export(SPEC, "--certificate", "mine.json", code=0)
-    assert files() == ["mine.json", "reports/soft-tissue.export.json"]
 
 
 def signed(text, edit):
@@ -113,13 +100,6 @@ def test_certificate_that_does_not_cover_the_design(export, certificate, edit):
     assert files() == ["mine.json"]
 
 
-def test_certificate_that_is_none(export):
-    export(SPEC, "--certificate", "missing.json", code=2)
-    Path("mine.json").write_text("[]")
-    export(SPEC, "--certificate", "mine.json", code=2)
-    assert files() == ["mine.json"]
-
-
 def sampled_text():
     head, _, _ = SPEC.read_text().partition("  withdrawal:")
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
@@ -142,21 +122,6 @@ def sampled_certificate(tmp_path_factory):
 def sampled(export, sampled_certificate):
     Path("mine.json").write_text(sampled_certificate)
     return sampled_spec(), "mine.json"
-
-
-@pytest.mark.slow
-def test_programs_with_a_proof_of_the_sampled_loop(export):
-    spec = sampled_spec()
-    done = export(spec, "--out", "out", "--format", "c", code=0)
-    assert "every-2-ms: PROVED" in done.stdout
-    proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
-    before = contents()
-    export(*proved, "--format", "c", code=0)
-    assert contents() == before
-    Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
-    before = contents()
-    export(*proved, "--format", "c", code=2)
-    assert contents() == before
 
 
 @pytest.mark.parametrize("name", ["c", "json", "mat", "fmu"])

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.gating.conftest import STABLE
-from tests.support import PRINT_ERROR, run, typed
+from tests.support import PRINT_ERROR, run
 from tests.terminal import run_on_terminal
 
 
@@ -17,15 +17,6 @@ def gate(monkeypatch, tmp_path):
     Path("specs").mkdir()
     Path("specs/stable.nrs.yaml").write_text(STABLE)
     return partial(run, "gate", cwd=tmp_path)
-
-
-def test_as_typed(gate, tmp_path):
-    done = typed("gate", "specs", "--no-reports", "-v", cwd=tmp_path, code=0)
-    assert "specs/stable.nrs.yaml" in done.stdout
-    assert "nrs.lock written" in done.stderr
-    assert "1 s" not in done.stdout.replace("1 spec", ""), "times belong on stderr"
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["nrs.lock", "reports", "specs"]
-    assert [p.name for p in (tmp_path / "reports").iterdir()] == ["stable.cert.json"]
 
 
 def test_a_narrow_terminal(tmp_path):

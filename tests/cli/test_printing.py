@@ -15,7 +15,6 @@ from nrs_design.cli.printing import (
     progress,
     say,
     say_failure,
-    taking_json,
     wrapped,
 )
 
@@ -114,12 +113,3 @@ def test_a_long_step_is_told_without_a_terminal(monkeypatch, capsys):
     with output(as_json=False, quiet=True), progress("certifying") as step:
         step("lmi")
     assert capsys.readouterr().err == ""
-
-
-def test_a_document_may_be_taken_in_place_of_being_printed(capsys):
-    with taking_json() as documents:
-        print_json("verify", {"words": "a"})
-    assert [json.loads(text)["words"] for text in documents] == ["a"]
-    assert capsys.readouterr().out == ""
-    print_json("verify", {"words": "b"})
-    assert json.loads(capsys.readouterr().out)["words"] == "b"

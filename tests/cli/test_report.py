@@ -1,33 +1,25 @@
+"""`nrs-design report`, as a user types it."""
+
 import json
 
 import pytest
-from typer.testing import CliRunner
 
-from nrs_design.cli.app import make_app
-from tests.support import COMMUTING, PRINT_ERROR, ROOT
-
-COMMUTING, PRINT_ERROR = map(str, (COMMUTING, PRINT_ERROR))
-
-
-def run(*arguments: str):
-    return CliRunner().invoke(make_app(), ["report", *arguments])
+from tests.support import COMMUTING, ROOT, run
 
 
 def test_a_date_is_written_only_if_given(tmp_path):
-    out = tmp_path / "c.html"
     pages = []
-    for dates in ([], ["--date", "2026-03-01"]):
-        assert run(COMMUTING, "--out", str(out), *dates).exit_code == 0
-        pages.append(out.read_bytes())
-    assert pages[0] != pages[1]
-    assert b"2026-03-01" not in pages[0]
+    for dates in ((), ("--date", "2026-03-01")):
+        run("report", COMMUTING, "--out", "c.html", *dates, cwd=tmp_path, code=0)
+        pages.append((tmp_path / "c.html").read_bytes())
+    assert [b"2026-03-01" in page for page in pages] == [False, True]
 
 
 @pytest.mark.slow
 def test_a_certificate_at_hand_is_shown(tmp_path):
-    certificate, page = ROOT / "reports/commuting.cert.json", tmp_path / "a.html"
-    given = ("--certificate", str(certificate), "--out", str(page))
-    assert run(COMMUTING, *given).exit_code == 0
-    text = page.read_text(encoding="utf-8")
+    certificate = ROOT / "reports/commuting.cert.json"
+    given = ("--certificate", certificate, "--out", "a.html")
+    run("report", COMMUTING, *given, cwd=tmp_path, code=0)
+    text = (tmp_path / "a.html").read_text(encoding="utf-8")
     assert json.loads(certificate.read_text(encoding="utf-8"))["id"] in text
     assert "each of its statements was checked again exactly" in text

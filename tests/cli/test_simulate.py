@@ -46,15 +46,6 @@ def test_a_log_of_the_law_that_ships_can_be_audited(spec, tmp_path):
     assert audited.returncode in (1, 3), audited.stderr
 
 
-def test_a_saturated_command_is_said(spec, tmp_path):
-    path = spec(more=SAMPLED)
-    path.write_text(path.read_text().replace("2 Hz}", "2 Hz, command: 100 rpm}"))
-    saturated = document_of("simulate", path, cwd=tmp_path)["runs"][0]["saturated_samples"]
-    assert saturated > 0
-    told = run("simulate", path, "-v", cwd=tmp_path).stdout
-    assert f"met its limit at {saturated} samples" in told
-
-
 def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     laws = {name: law.replace("0.01 kg", "0 kg") for name, law in IMPEDANCE.items()}
     path = spec(more="contact: losable\ndisturbances: {command: 8 deg/s}\n", controllers=laws)
@@ -93,15 +84,6 @@ def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
     force = spec(controllers=PLACED, more=SAMPLED)
     result = run("simulate", force, *option, cwd=tmp_path, code=2)
     assert "for impedance controllers alone" in result.stderr
-
-
-def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
-    own = "limits: {torque: 0.25 N*m, deflection: 0.5 deg, velocity: 10 deg/s}"
-    result = run("simulate", spec(f"{RUN}, {own}"), "-v", cwd=tmp_path)
-    rows = [line.split() for line in result.stdout.splitlines() if "largest" in line]
-    assert [row[-1] for row in rows] == ["0.25", "0.5", "10"]
-    document = document_of("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
-    assert document["runs"][0]["limits"]["torque"] == 0.25
 
 
 def test_a_bound_far_away_is_named_not_drawn():

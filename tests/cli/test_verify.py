@@ -94,21 +94,3 @@ def test_deployed_files_are_those_of_the_certificate(deployed):
         document = document_of(*CHECK, place, cwd=deployed)
         assert (document["verdict"], document["deployed"]) == ("rejected", place)
         assert len(document["differences"]) == 1
-
-
-@pytest.mark.parametrize(
-    ("place", "said"),
-    [
-        ("x.nrs.yaml", "none of the files that are compared"),
-        ("x/nothing.h", "x/nothing.h: there is no such file"),
-        ("nothing", "nothing: there is no such file or folder"),
-    ],
-)
-def test_places_that_cannot_be_meant(firmware, place, said):
-    assert said in run(*CHECK, place, cwd=firmware, code=2).stderr
-
-
-def test_what_is_deployed_needs_its_own_spec(firmware):
-    run("verify", "x/x.cert.json", "--deployed", "x", cwd=firmware, code=2)
-    done = run("verify", "x/x.cert.json", COMMUTING, "--deployed", "x", cwd=firmware, code=1)
-    assert "another spec" in done.stdout

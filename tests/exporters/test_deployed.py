@@ -55,12 +55,16 @@ def compared(folder, sampled, sampled_export):
 def test_a_folder_as_exported(folder, compared):
     (folder / "soft-tissue.cert.json").write_text("{}")
     (folder / "main.c").write_text("int main(void) { return 0; }")
+    # A compiler takes this one, too, where its folder is named first.
+    for name in ("old/soft-tissue.h", ".git/objects/a", ".git/objects/b"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
     found = compared()
     assert found.differences == ()
     assert {file.name for file in found.compared} == {
         f"soft-tissue{ending}" for name in EXECUTABLE for ending in format_of(name).files
     }
-    assert found.left_out == "how it is compiled, main.c"
+    assert found.left_out == "how it is compiled, .git, main.c, old/soft-tissue.h"
 
 
 @pytest.mark.parametrize("ending", [".h", "_test.c", ".fmu"])
@@ -82,6 +86,8 @@ CHANGES = [
     ("a flag", ".cmake", "-ffp-contract=off", "-ffast-math"),
     ("ends of lines", ".c", "\n", "\r\n"),
     ("no text at all", ".c", r"(?s).*", ""),
+    ("its last end of line is gone", ".c", r"\n\Z", ""),
+    ("an end of line more", ".c", r"\n\Z", "\n\n"),
 ]
 
 

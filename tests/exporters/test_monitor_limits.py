@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.replica import StepProgram
+from nrs_design.exporters.deployed import compare_deployed
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
 from nrs_design.exporters.formats.monitor import render, told_kinds
@@ -17,7 +18,7 @@ from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.spec import read_spec
 from nrs_design.spec.sampling import SamplingSpec
 from tests.exporters.monitored import Input, Monitor
-from tests.exporters.programs import STRICT, built, compiler
+from tests.exporters.programs import STRICT, built, compiler, write_formats
 from tests.loop.test_sampled_saturation import IMPEDANCE, KM, TAU
 
 STIFFNESS = 747.1461 * 0.24**2
@@ -36,6 +37,12 @@ def export(tmp_path_factory):
     # Torques of the region are beyond the limit of the example.
     text = text.replace("torque: 0.3 N*m", "torque: 9 N*m")
     return exported(tmp_path_factory.mktemp("region"), text)
+
+
+def test_the_region_is_in_the_monitor_that_verify_compares_with(tmp_path, export):
+    write_formats(tmp_path, export, ("c", "monitor"))
+    found = compare_deployed(tmp_path, export.spec, export.certificate)
+    assert (len(found.compared), found.differences) == (6, ())
 
 
 LAW = ("reference", "error_before", "velocity")

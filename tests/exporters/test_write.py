@@ -4,11 +4,10 @@ import pytest
 
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format
-from nrs_design.exporters.write import places, write_files
+from nrs_design.exporters.write import places
 
 ONE = Format("", "", {".mat": b"MAT"})
 TWO = Format("", "", {".c": b"/* ours", ".h": b"/* ours"})
-CONTENTS = {".c": b"/* ours */ c", ".h": b"/* ours */ h"}
 
 
 def test_where_files_go(tmp_path):
@@ -27,21 +26,3 @@ def test_what_seems_to_be_another_file_makes_no_folder(tmp_path, format_, name):
     assert {path.parent for path in places(format_, "x", tmp_path / name).values()} == {
         tmp_path / name
     }
-
-
-def test_files_are_written_and_replaced(tmp_path):
-    files = places(TWO, "x", tmp_path / "new")
-    for _ in range(2):
-        write_files(TWO, files, CONTENTS)
-        assert {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()} == {
-            "x.c": CONTENTS[".c"],
-            "x.h": CONTENTS[".h"],
-        }
-
-
-def test_nothing_is_written_where_one_file_is_another_s(tmp_path):
-    (tmp_path / "x.h").write_bytes(b"int mine;")
-    with pytest.raises(OutputError, match="not overwritten"):
-        write_files(TWO, places(TWO, "x", tmp_path), CONTENTS)
-    assert [path.name for path in tmp_path.iterdir()] == ["x.h"]
-    assert (tmp_path / "x.h").read_bytes() == b"int mine;"

@@ -80,6 +80,7 @@ def test_specs_by_another_name_are_listed(tmp_path):
     [
         *rows(__file__, "test_a_kind_is_found_however_it_is_written"),
         "#" + 40_000 * " " + "\nkind: robot\n",
+        40_000 * "\n" + "kind: robot\n",
     ],
 )
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])

@@ -5,7 +5,6 @@ import pytest
 
 from nrs_design.errors import CertificateError
 from nrs_design.gating.lock import MAX_BYTES, MAX_SPECS, Lock, dump_lock, read_lock
-from nrs_design.gating.rules import RETIRED
 from tests.tables import table
 
 
@@ -16,7 +15,6 @@ def test_lock_reads_back(project):
 
 TABLE = table(Path(__file__).with_suffix(".yaml"))
 ENTRY = TABLE["entry"]
-(GOAL,) = ENTRY["goals"]
 
 
 def document(*entries, **changes):
@@ -26,17 +24,6 @@ def document(*entries, **changes):
 
 OLDER = document(schema="nrs-design/lock/1").encode()
 MANY = document(*[{}] * (MAX_SPECS + 1)).encode()
-
-
-@pytest.mark.parametrize("status", ["met", "missed"])
-def test_goals_of_retired_rules_are_skipped(tmp_path, status):
-    """An older release locked them; a gate of today renews the entry without them."""
-    (retired,) = RETIRED
-    old = {"rule": retired, "subject": "bounds", "status": status, "message": "as it was"}
-    (tmp_path / "nrs.lock").write_text(document({**ENTRY, "goals": [old, GOAL, old]}))
-    lock = read_lock(tmp_path / "nrs.lock")
-    assert [goal.rule for goal in lock.specs[0].goals] == ["NRS103"]
-    assert retired not in dump_lock(lock)
 
 
 def spoiled(case):

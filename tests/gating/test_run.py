@@ -10,7 +10,7 @@ from nrs_design.gating.run import Files, run_gate
 from tests.pipeline.test_blocked import PAIR
 from tests.support import write_spec
 
-from .conftest import BROKEN, SOFT_TISSUE, STABLE, UNSTABLE, gate_of
+from .conftest import BROKEN, STABLE, UNSTABLE, gate_of
 
 
 @pytest.fixture
@@ -95,19 +95,6 @@ def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, mo
     assert (broken.rule.id, broken.status) == ("NRS104", Status.MISSED)
 
 
-def test_what_is_doubtful_breaks_nothing(examine):
-    hand = "environments:\n  hand: {model: elastic, stiffness: 60 N*m/rad}\n"
-    text = SOFT_TISSUE.read_text().replace("environments:\n", hand)
-    outcome = examine(text)
-    assert outcome.severity == 0
-    cautions = outcome.specs[0].cautions
-    messages = [item.message for item in cautions]
-    (place,) = (k for k, text in enumerate(messages) if "hand is touched by no" in text)
-    assert text.split("\n")[cautions[place].line - 1].startswith("  hand:")
-    # What is furthest beyond its limit leads.
-    assert messages[0].startswith("withdrawal: sensitivity peak Ms 3.753")
-
-
 @pytest.mark.slow
 def test_lines_that_block_a_proof_are_said_and_the_gate_fails(examine):
     (spec,) = examine(PAIR).specs
@@ -157,6 +144,17 @@ def test_a_page_of_another_certificate_is_drawn_again(tmp_path, drawn, page):
 def test_a_page_that_somebody_changed_is_drawn_again(tmp_path, drawn, page):
     (tmp_path / "reports/given.html").write_bytes(page.replace(b"Proved", b"Proved for all"))
     assert [drawn()[0], drawn()[0]] == [True, False]
+
+
+def test_a_page_of_a_spec_that_has_moved_is_drawn_again(tmp_path, page):
+    """It says where its spec lies, and so whose it is."""
+    spec, moved = tmp_path / "mine.nrs.yaml", tmp_path / "moved/mine.nrs.yaml"
+    moved.parent.mkdir()
+    spec.rename(moved)
+    assert not run_gate([moved], Files(folder=tmp_path / "reports")).broken
+    drawn_again = (tmp_path / "reports/given.html").read_bytes()
+    assert b"../moved/mine.nrs.yaml" in drawn_again
+    assert b"../moved/mine.nrs.yaml" not in page
 
 
 def test_what_is_recorded_and_fulfilled_has_no_page_unless_all_are_asked_for(tmp_path, drawn, page):

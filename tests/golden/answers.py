@@ -34,7 +34,6 @@ OTHERS = (
     f"robot correction {ROBOT}",
     "reproduce",
     "ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'",
-    "check-lyapunov docs/examples/lyapunov.json",
     "mode-logic docs/examples/insertion-by-sign.nrs.yaml",
     "mode-logic docs/examples/force-by-threshold.nrs.yaml",
     "identify tissue specs/data/silicone-soft-1.csv --lever-arm '0.24 m'",

@@ -158,28 +158,6 @@ LOCKS: dict[str, Callable[[], str | bytes]] = {
     "deceptive key": lambda: json.dumps({DECEPTIVE + "\n::error::x": 1}),
 }
 
-VALUE = '{"P": [[1]], "A": %s}'
-IDENTITY_60 = [[int(i == j) for j in range(60)] for i in range(60)]
-PROPOSALS: dict[str, Callable[[], str | bytes]] = {
-    "empty row": lambda: VALUE % "[[]]",
-    "no row": lambda: VALUE % "[]",
-    "mode of many digits": lambda: VALUE.replace("A", "A" + "1" * 5000) % "[[1]]",
-    "long integer": lambda: VALUE % f"[[{'1' * MIB}]]",
-    "deep": lambda: VALUE % ("[" * 100_000),
-    "lists of nothing": lambda: VALUE % ("[" + "[]," * (5 * MIB) + "[]]"),
-    "a million entries": lambda: VALUE % ("[[" + "1," * MIB + "1]]"),
-    "deceptive mode": lambda: json.dumps({"P": [[1]], "A": {DECEPTIVE + "\n::error::x": [[1]]}}),
-    "deceptive entry": lambda: json.dumps({"P": [[1]], "A": [[DECEPTIVE + "\n::error::x"]]}),
-    "deceptive time": lambda: json.dumps({"P": [[1]], "A": [[-1]], "time": DECEPTIVE}),
-    "coprime 20": lambda: json.dumps({"P": IDENTITY_60[:20], "A": coprime(20, 90)}),
-    "digits 60": lambda: json.dumps({"P": IDENTITY_60, "A": dense(60, 95, stable=True)}),
-    "indefinite 24": lambda: json.dumps({"P": dense(24, 90), "A": dense(24, 90, stable=True)}),
-    "slow 24": lambda: json.dumps(
-        {"P": IDENTITY_60[:24], "A": [["-1e-99" if i == j else 0 for j in range(24)]
-                                      for i in range(24)]}
-    ),
-}  # fmt: skip
-
 
 NAMES = (
     "a\n::error::x.nrs.yaml",

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from nrs_design.gating.lock import Lock, dump_lock
-from tests.hostile.corpus import CERTIFICATES, LOCKS, NAMES, PROPOSALS, RECORDS, SPECS, write
+from tests.hostile.corpus import CERTIFICATES, LOCKS, NAMES, RECORDS, SPECS, write
 from tests.hostile.running import check
 from tests.support import COMMUTING
 
@@ -102,12 +102,6 @@ def test_a_lock(place, case):
     check(place, "gate", "--locked", "spec.nrs.yaml", codes=(1, 2))
 
 
-@pytest.mark.parametrize("case", PROPOSALS)
-def test_a_proposal(place, case):
-    write(place / "work/p.json", PROPOSALS[case]())
-    check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
-
-
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(
     "command",
@@ -133,7 +127,6 @@ def test_a_file_name(place, name, command):
         ("identify", "tissue", "x"),
         ("identify", "actuator", "x"),
         ("verify", "x", str(COMMUTING)),
-        ("check-lyapunov", "x"),
         ("export", str(COMMUTING), "--certificate", "x"),
         ("gate", "--locked", "--lock", "x", str(COMMUTING)),
         ("init", "robot", "--out", "new.nrs.yaml"),

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.api.proposal import read_proposal
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
@@ -64,19 +63,11 @@ def certificate_of(spec: Path) -> tuple[bytes, object]:
 
 LOCK = (ROOT / "nrs.lock").read_bytes()
 
-EXAMPLE = ROOT / "docs/examples/lyapunov.json"
-
-
-def read_json_proposal(path: Path) -> object:
-    return read_proposal(path.rename(path.with_suffix(".json")))
-
-
 READERS: dict[str, tuple[Callable[[Path], object], bytes]] = {
     "given matrices": (read_spec, COMMUTING.read_bytes()),
     "interaction design": (read_spec, SOFT_TISSUE.read_bytes()),
     "certificate": (read_document, b'{"a": [1, 2, {"b": "c"}], "d": null}'),
     "lock": (read_lock, LOCK),
-    "proposal": (read_json_proposal, EXAMPLE.read_bytes()),
     "record": (read_tissue, RECORD.encode()),
 }
 

@@ -29,7 +29,7 @@ SIGN = {"add": "+", "subtract": "-", "multiply": "*"}
 FLAGS = (
     "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
 )
-# Signals of the mode logic, in words.
+# Signals of the mode logic, as text.
 _SEEN = {"command": "velocity command", "torque": "torque"}
 
 

@@ -9,7 +9,7 @@ import io
 import platform
 import shutil
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -86,7 +86,7 @@ def remarks(files: Mapping[str, bytes]) -> tuple[str, ...]:
 class Variable:
     """One variable that is a real number."""
 
-    # As the description calls it, and its number.
+    # Name and number in the description.
     name: str
     reference: int
     # Member of the model in C.
@@ -99,17 +99,11 @@ class Variable:
 
 def variables_of(law: StepLaw) -> tuple[Variable, ...]:
     """Return all real variables of a law by their numbers: inputs, then outputs, then states."""
-    return tuple(Variable(name, i, *rest) for i, (name, *rest) in enumerate(_rows(law)))
-
-
-def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
-    for value in law.inputs:
-        yield value.name, f"in.{value.name}", "input", value.unit, value.meaning
-    for name in law.outputs:
-        meaning = "what the step computed; 0 where it was not valid"
-        yield name, f"out.{name}", "output", law.units[name], meaning
-    for value in law.states:
-        yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
+    computed = "what the step computed; 0 where it was not valid"
+    rows = [(v.name, f"in.{v.name}", "input", v.unit, v.meaning) for v in law.inputs]
+    rows += [(name, f"out.{name}", "output", law.units[name], computed) for name in law.outputs]
+    rows += [(f"state.{v.name}", f"state.{v.name}", "local", v.unit, v.meaning) for v in law.states]
+    return tuple(Variable(name, number, *rest) for number, (name, *rest) in enumerate(rows))
 
 
 def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
@@ -154,7 +148,7 @@ def packed(entries: Mapping[str, bytes]) -> bytes:
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for name, content in entries.items():
             info = zipfile.ZipInfo(name, _DATE)
-            # As a system writes it that Python does not run on may differ.
+            # The default differs between operating systems.
             info.create_system = 3
             info.external_attr = 0o644 << 16
             archive.writestr(info, content)
@@ -198,7 +192,7 @@ def description(program: Program) -> str:
 
 
 def _page(program: Program, binary: str) -> str:
-    """Return the documentation as HTML, with what is compiled, in words."""
+    """Return the documentation as HTML; `binary` describes the compiled part."""
     proof, modes = program.record.proof, program.law.modes
     sections = (
         ("What this is", (*program.about, binary)),

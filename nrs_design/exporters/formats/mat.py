@@ -178,18 +178,14 @@ def _value(value: Any, log2: int = 0) -> Any:
         case str() if not _RATIO.fullmatch(value):
             return value
         case str() | int():
-            return _double(Fraction(value))
+            try:
+                return float(Fraction(value))
+            except OverflowError:
+                # The digits stand for a number that is larger than any double.
+                return str(Fraction(value))
         case _:
             return value
 
 
 def _form(rows: list[list[int]], log2: int) -> Any:
     return np.array([[float(Fraction(entry, 2**log2)) for entry in row] for row in rows])
-
-
-def _double(number: Fraction) -> Any:
-    """Return the double next to a number, or its digits where it is larger than any double."""
-    try:
-        return float(number)
-    except OverflowError:
-        return str(number)

@@ -121,7 +121,7 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
 
 
 def told_kinds(limits: MonitorLimits) -> dict[str, str]:
-    """Return what may be left, and what that means, in the order of their numbers."""
+    """Return kinds of violations with their meanings, in the order of their numbers."""
     sector = limits.sector
     told = {
         # Within the region, the command may meet its limit.

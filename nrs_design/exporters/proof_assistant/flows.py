@@ -39,12 +39,12 @@ class FlowStatement(AbstractStatement):
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
     def mode(self, k: int, mode: Mode, definitions: Definitions) -> str:
-        """Return the flow of a mode; the library lets inputs act on it, of which there are none."""
+        """Return the flow of a mode, without inputs."""
         rows = [definitions.row([mode.A.numerators[i][j] for j in self.order]) for i in self.order]
         return f"Flow {listed(rows)} {mode.A.denominator} [] 1"
 
     def witnesses(self) -> Iterator[tuple[str, IntegerMatrix, int]]:
-        """Yield for every flow where it begins, its inequality, and the factor that it has."""
+        """Yield source, inequality and factor of every flow."""
         system, evidence = self.system, self.evidence
         added = iter(evidence.vanishing)
         for a, step, b in evidence.edges_in_time(system):
@@ -79,7 +79,7 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
 
 
 def _define_form(flows: FlowStatement, definitions: Definitions) -> None:
-    """Define the form with its monomials, and multipliers of inputs, of which there are none."""
+    """Define the form with its monomials, and an empty list of multipliers of inputs."""
     n = flows.system.order
     definitions.define("basis", flows.basis(n))
     definitions.define("form", symmetric(flows.evidence.nodes[0].form))

@@ -67,7 +67,7 @@ class SampledStatement(AbstractStatement):
         ]
 
     def node(self, k: int) -> str:
-        """Return a form with the multipliers of what is known on steps to it."""
+        """Return a form with the multipliers of the constraints on steps to the form."""
         found = {
             item.fact: item.value
             for target in (None, k)

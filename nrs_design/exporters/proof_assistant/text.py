@@ -14,7 +14,7 @@ from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
 
 WIDTH = 100
-# From this length on, Coq reads digits of its own in a tenth of the time that a decimal takes it.
+# From this length on, Coq reads hexadecimal digits ten times as fast as a decimal.
 SHORT_BITS = 30
 
 
@@ -61,7 +61,7 @@ def long_integer(number: int) -> str:
 
 
 def symmetric(form: IntegerMatrix, integer: Callable[[int], str] = str) -> str:
-    """Return a symmetric matrix: of every row the diagonal entry, and what is right of it."""
+    """Return a symmetric matrix: the entries of every row from the diagonal on."""
     rows = (
         f"({integer(row[i])}, {listed(map(integer, row[i + 1 :]))})" for i, row in enumerate(form)
     )
@@ -144,7 +144,7 @@ class Theorem:
 
     library: tuple[str, ...]  # Parts of the library, in order
     definitions: Sequence[str]  # The system and the certificate
-    check: str  # What must be computed to be true
+    check: str  # Boolean term that must evaluate to true
     statement: str  # The theorem
     proof: str  # A term, with `checked` for what was computed
     states: tuple[str, ...]  # In the order in which it counts them

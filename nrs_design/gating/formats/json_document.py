@@ -29,7 +29,7 @@ def to_json(outcome: GateOutcome) -> str:
 
 
 def _against(changes: BaseChanges) -> dict[str, Any]:
-    """Return what differs from the base; what is weaker is an obligation, too."""
+    """Return the changes against the base; each weaker one is an obligation, too."""
     return {
         "base": changes.base.as_posix(),
         "weaker": changes.weaker,

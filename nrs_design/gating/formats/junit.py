@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, from_here
+from nrs_design.gating.obligations import GateOutcome, Obligation, Status, from_here
 from nrs_design.printable import printable
 
 
@@ -14,30 +14,23 @@ def to_junit(outcome: GateOutcome) -> str:
     every = [item for spec in outcome.specs for item in spec.obligations]
     root = ElementTree.Element("testsuites", {"name": "nrs-design", **_counts(every)})
     for spec in outcome.specs:
-        _add_suite(root, spec)
+        name = printable(from_here(spec.path))
+        attributes = {"name": name, **_counts(spec.obligations)}
+        suite = ElementTree.SubElement(root, "testsuite", attributes)
+        for item in spec.obligations:
+            _add_case(suite, name, item)
     ElementTree.indent(root)
     body = ElementTree.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{body}\n'
 
 
-def _add_suite(root: ElementTree.Element, spec: SpecOutcome) -> None:
-    name = printable(from_here(spec.path))
-    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **_counts(spec.obligations)})
-    for item in spec.obligations:
-        case = ElementTree.SubElement(
-            suite,
-            "testcase",
-            classname=name,
-            name=printable(f"{item.rule.id} {item.rule.title}: {item.subject}"),
-            file=name,
-        )
-        if item.line is not None:
-            case.set("line", str(item.line))
-        if not item.fulfilled:
-            _add_failure(case, item)
-
-
-def _add_failure(case: ElementTree.Element, item: Obligation) -> None:
+def _add_case(suite: ElementTree.Element, file: str, item: Obligation) -> None:
+    name = printable(f"{item.rule.id} {item.rule.title}: {item.subject}")
+    case = ElementTree.SubElement(suite, "testcase", classname=file, name=name, file=file)
+    if item.line is not None:
+        case.set("line", str(item.line))
+    if item.fulfilled:
+        return
     is_error = item.status is Status.ERROR
     failure = ElementTree.SubElement(
         case,

@@ -7,7 +7,7 @@ from typing import Any
 
 from nrs_design import __version__
 from nrs_design.gating.obligations import GateOutcome, Obligation, relative_uri
-from nrs_design.gating.rules import RULES, Rule
+from nrs_design.gating.rules import RULES
 from nrs_design.printable import json_text
 from nrs_design.spec.task_space import file_of
 
@@ -26,7 +26,16 @@ def to_sarif(outcome: GateOutcome) -> str:
                     "driver": {
                         "name": "nrs-design",
                         "semanticVersion": __version__,
-                        "rules": [_rule(rule) for rule in RULES.values()],
+                        "rules": [
+                            {
+                                "id": rule.id,
+                                "shortDescription": {"text": rule.title},
+                                "fullDescription": {"text": rule.explanation},
+                                "help": {"text": rule.remedy},
+                                "defaultConfiguration": {"level": "error"},
+                            }
+                            for rule in RULES.values()
+                        ],
                     }
                 },
                 "columnKind": "unicodeCodePoints",
@@ -35,16 +44,6 @@ def to_sarif(outcome: GateOutcome) -> str:
         ],
     }
     return json_text(log) + "\n"
-
-
-def _rule(rule: Rule) -> dict[str, Any]:
-    return {
-        "id": rule.id,
-        "shortDescription": {"text": rule.title},
-        "fullDescription": {"text": rule.explanation},
-        "help": {"text": rule.remedy},
-        "defaultConfiguration": {"level": "error"},
-    }
 
 
 def _result(item: Obligation) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""For people: one table, and a line for every broken obligation; as Markdown for a review, too."""
+"""A table, and a line for every broken obligation, as text or as Markdown for a review."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nrs_design.proof.text import counted
 
 COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
 SHORT_ID = 12
-# What Markdown or HTML would take for markup.
+# Characters that are markup in Markdown or HTML.
 _MARKUP = str.maketrans({c: f"&#{ord(c)};" for c in "\\`*_{}[]<>()#+-!|&~@:"})
 
 
@@ -56,7 +56,7 @@ def change_lines(outcome: GateOutcome) -> list[str]:
 
 
 def _row(spec: SpecOutcome) -> Sequence[str]:
-    # What is proved holds for slower decay too, so the relation is true of a rounded rate as well.
+    # A proof of a rate proves every slower rate: the relation holds for the rounded rate, too.
     sign, unit = (">=", " 1/s") if spec.rate_name == "alpha" else ("<=", "")
     return (
         printable(spec.path.as_posix()),
@@ -140,5 +140,5 @@ def _markdown_table(outcome: GateOutcome) -> list[str]:
 
 
 def _plain(text: str) -> str:
-    """Write text of strangers so that nothing in it is markup, a link or a mention."""
+    """Escape markup, links and mentions in a text of others."""
     return printable(text).translate(_MARKUP)

@@ -41,8 +41,31 @@ class CommonQuadraticStatus(StrEnum):
     UNKNOWN = "unknown"
 
 
+class AbstractChecked:
+    """Statements about a system that have passed the exact check, and what follows from them."""
+
+    __slots__ = ()
+    system: SwitchedSystem
+    statements: tuple[AbstractEvidence, ...]
+
+    @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict, or None."""
+        return deciding(self.system, self.statements)
+
+    @property
+    def refuted_in(self) -> str | None:
+        """Contact in which it is refuted, where the loss of contact stays open; or None."""
+        return refuted_in(self.system, self.statements)
+
+    @property
+    def granted(self) -> tuple[Assumption, ...]:
+        """Assumptions of the statements."""
+        return granted(self.system, self.statements)
+
+
 @dataclass(frozen=True, slots=True)
-class Certificate:
+class Certificate(AbstractChecked):
     """A claim about one spec with the evidence for it."""
 
     # spec_name, spec_sha256: the spec that it belongs to, and the hash of what that file says.
@@ -66,21 +89,6 @@ class Certificate:
     def verdict(self) -> str:
         """``proved``, ``refuted``, or ``inconclusive`` if it shows neither."""
         return str(verdict_of(self.system, self.statements))
-
-    @property
-    def evidence(self) -> AbstractEvidence | None:
-        """The statement that decides the verdict, or None."""
-        return deciding(self.system, self.statements)
-
-    @property
-    def refuted_in(self) -> str | None:
-        """Of what the statements refute it, if that leaves the loss of contact open; or None."""
-        return refuted_in(self.system, self.statements)
-
-    @property
-    def granted(self) -> tuple[Assumption, ...]:
-        """What the statements take for granted."""
-        return granted(self.system, self.statements)
 
     @property
     def common_quadratic(self) -> CommonQuadraticStatus:

@@ -32,14 +32,7 @@ from nrs_design.proof.text import quoted
 MAX_VERDICTS = 2
 MAX_BYTES = 32 * 2**20
 # What a hostile document can raise before the exact check: all of it means rejection.
-_MALFORMED = (
-    LookupError,
-    TypeError,
-    ValueError,
-    ArithmeticError,
-    AttributeError,
-    RecursionError,
-)
+_MALFORMED = (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, RecursionError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +169,7 @@ def read_ages(document: Mapping[str, Any]) -> tuple[int, int] | None:
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:
-    """Return a judgement: a rejection where something is malformed, and not without flint.
+    """Return a judgement as `judged` does, and not without flint.
 
     An `InternalError` if flint disagrees with what has been accepted.
     """
@@ -184,9 +177,8 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     certificate = verification.certificate
     if certificate is None or verification.fault is not None:
         return verification
-    system, statements = certificate.system, certificate.statements
-    pairs = zip(statements, verification.forms, strict=True)
-    if not all(agrees(system, item, forms) for item, forms in pairs):
+    pairs = zip(certificate.statements, verification.forms, strict=True)
+    if not all(agrees(certificate.system, item, forms) for item, forms in pairs):
         raise InternalError(DISAGREE)
     return Verification(certificate, None)
 

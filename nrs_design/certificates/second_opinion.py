@@ -35,9 +35,7 @@ Exponent = tuple[RationalMatrix, Fraction]
 
 
 def agrees(
-    system: SwitchedSystem,
-    evidence: AbstractEvidence,
-    forms: Sequence[IntegerMatrix] | None = None,
+    system: SwitchedSystem, evidence: AbstractEvidence, forms: Sequence[IntegerMatrix] | None = None
 ) -> bool:
     """Tell whether the second opinion, too, is that evidence holds which the check has accepted.
 

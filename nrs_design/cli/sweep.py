@@ -33,7 +33,6 @@ SWEPT = (
     "tune",
     "mode-logic",
     "certify-switching",
-    "compare-methods",
     "simulate",
     "robot check",
     "robot kinematics",

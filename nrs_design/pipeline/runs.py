@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -12,20 +11,17 @@ from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.pipeline.certification import (
     Result,
-    assemble_spec,
     certify_design,
     is_of_gains,
     recorded_certification,
 )
-from nrs_design.pipeline.design import Designed, design_at_least_cost, interaction_of, placed
+from nrs_design.pipeline.design import Designed, design_at_least_cost, interaction_of
 from nrs_design.progress import Progress, silent
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
-    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.search.certification import Limits
-    from nrs_design.search.comparison import MethodRun
 
 _ANEW = "make it anew with certify-switching --out"
 
@@ -154,18 +150,3 @@ def run_interaction_of(
     designed, kept = read_recorded(loaded, file)
     assert designed is not None, "an interaction design"
     return designed, kept
-
-
-def run_comparison(
-    loaded: LoadedSpec,
-    limits: Limits,
-    progress: Progress = silent,
-) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
-    """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.comparison import compare_methods
-
-    designed = run_design(loaded, progress)
-    with placed(loaded):
-        system = assemble_spec(loaded, designed)
-        return system, compare_methods(partial(certify, system), limits, progress)

@@ -59,9 +59,7 @@ def take_candidate(
 
 
 def first_accepted(
-    candidates: Candidates[E],
-    system: SwitchedSystem,
-    allowance: Allowance | None = None,
+    candidates: Candidates[E], system: SwitchedSystem, allowance: Allowance | None = None
 ) -> tuple[E | None, str]:
     """Return the first candidate that the exact check accepts, and in words how the search ended.
 

@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.certificates.certificate import (
-    CommonQuadraticStatus,
-    Verdict,
-    deciding,
-    granted,
-    refuted_in,
-)
-from nrs_design.proof.assumption import Assumption
+from nrs_design.certificates.certificate import AbstractChecked, CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import GIGABYTE
 
 
@@ -30,7 +22,6 @@ class Limits:
     memory: float = 2 * GIGABYTE  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
     more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
-    gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
     # What a goal asks for, in 1/s; a search goes on until it is proved, or cannot be.
     decay_rate: Fraction | None = None
 
@@ -49,7 +40,7 @@ class Attempt:
 
 
 @dataclass(frozen=True, slots=True)
-class Certification:
+class Certification(AbstractChecked):
     """The verdict on one system, with everything that was shown on the way."""
 
     system: SwitchedSystem  # What the verdict is about
@@ -64,21 +55,6 @@ class Certification:
     rate_limit: float | None = None
 
     @property
-    def evidence(self) -> AbstractEvidence | None:
-        """The statement that decides the verdict, or None."""
-        return deciding(self.system, self.statements)
-
-    @property
-    def refuted_in(self) -> str | None:
-        """Of what it is refuted, if that leaves the loss of contact open; None elsewhere."""
-        return refuted_in(self.system, self.statements)
-
-    @property
     def is_open(self) -> bool:
         """Whether it is neither proved nor refuted, nor refuted in some contact."""
         return self.verdict is Verdict.INCONCLUSIVE and self.refuted_in is None
-
-    @property
-    def granted(self) -> tuple[Assumption, ...]:
-        """What the statements take for granted."""
-        return granted(self.system, self.statements)

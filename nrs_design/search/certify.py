@@ -5,12 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from nrs_design.certificates.certificate import (
-    Verdict,
-    common_quadratic_of,
-    refuted_in,
-    verdict_of,
-)
+from nrs_design.certificates.certificate import Verdict, common_quadratic_of, refuted_in, verdict_of
 from nrs_design.certificates.goals import rate_per_second
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -20,11 +15,10 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence, rate_limit
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.statements import bounds, regions
-from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
+from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.work import Allowance, Fuse
 
 # Share of what is left, for a faster decay than the first proof shows.
@@ -59,7 +53,7 @@ def certify(
     statement has passed the exact check, and flint's second opinion as far as that goes
     (`nrs_design.certificates.second_opinion`).
 
-    A `DesignError` if the method or settings of the gradient iteration do not apply; a `ClockError`
+    A `DesignError` if the method does not apply; a `ClockError`
     if the clock stopped the search: what it would have found is not known; an `InternalError` if
     two exact computations disagree.
     """
@@ -70,10 +64,9 @@ def certify(
             f"the method {method} does not apply to this kind of switching and time",
             remedy="use --method auto",
         )
-    _check_gradient(system, method, limits.gradient)
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
-    task = _Task(method, _limits_for(merged, system, limits), allowance, progress)
+    task = _Task(method, limits, allowance, progress)
     # Lost contact and what the arithmetic rounds are matters of the whole state.
     simple = simple and system.contact is None and system.flights is None
     simple = simple and not system.roundings
@@ -131,37 +124,15 @@ def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) 
 
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(merged, replace(task, limits=_limits_for(merged, full, task.limits)))
+    result = _climb(merged, task)
     return replace(result, system=full, statements=_spread(result.statements, merged, full))
-
-
-def _check_gradient(system: SwitchedSystem, method: Method, gradient: Gradient) -> None:
-    """Refuse settings of the gradient iteration that would not be kept."""
-    if gradient != Gradient() and method not in {Method.AUTO, Method.GRADIENT}:
-        raise DesignError(
-            f"the method {method} has no use for settings of the gradient iteration",
-            remedy="use --method gradient, or leave them out",
-        )
-    names = [mode.name for mode in system.modes]
-    if gradient.start is not None and gradient.start not in names:
-        raise DesignError(
-            f"the gradient iteration cannot start with mode {gradient.start!r}: there is none",
-            remedy=f"one of {', '.join(names)}",
-        )
-
-
-def _limits_for(merged: SwitchedSystem, system: SwitchedSystem, limits: Limits) -> Limits:
-    """Let the gradient iteration start with the mode that stands for the wanted one."""
-    start = stand_in(limits.gradient.start, system, merged)
-    return replace(limits, gradient=replace(limits.gradient, start=start))
 
 
 def _climb(system: SwitchedSystem, task: _Task) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
     method, limits, allowance = task.method, task.limits, task.allowance
-    rates, gradient = limits.optimize_rate, limits.gradient
     with floats_in_silence():
-        family = Family.of(system, allowance, optimize_rate=rates, gradient=gradient)
+        family = Family.of(system, allowance, optimize_rate=limits.optimize_rate)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
     best: tuple[str, AbstractEvidence] | None = None

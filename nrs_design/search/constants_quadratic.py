@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
-from nrs_design.search.balance import mean_norm_coordinates, time_unit
+from nrs_design.search.balance import mean_norm, round_coordinates, time_unit
 from nrs_design.search.family import Family
 from nrs_design.search.rates import Rates, digits, propose, round_form, round_matrix
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
@@ -33,17 +33,13 @@ def search_constants_quadratic(family: Family) -> Candidates[ConstantsQuadratic]
     system = family.system
     if not np.isfinite(family.matrices).all() or not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    coordinates = mean_norm_coordinates(family.matrices, system.time)
+    coordinates = round_coordinates(mean_norm(family.matrices, system.time))
     if not np.isfinite(coordinates).all():
         return OUT_OF_RANGE
     program = _Program.of(family, coordinates)
     resolution = RESOLUTION if family.optimize_rate else COARSE
     rates = Rates(
-        resolution=resolution,
-        nearest=NEAREST,
-        bits=digits(FEWEST_BITS),
-        always=True,
-        words="found",
+        resolution=resolution, nearest=NEAREST, bits=digits(FEWEST_BITS), always=True, words="found"
     )
     return (yield from propose(program, family, family.limit, rates))
 

@@ -15,16 +15,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
-from nrs_design.search.balance import own_norms, round_coordinates, scale_states, separating
+from nrs_design.search.balance import own_norms, round_coordinates, separating
+from nrs_design.search.branches import matrices_of_kinds
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
-from nrs_design.search.family import Family, limit_rate, to_floats
+from nrs_design.search.family import Family, limit_rate
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
 from nrs_design.search.rates import Rates, digits, propose, rate_at
@@ -69,13 +69,7 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
     for candidate in together:
         graph = candidate.evidence
         yield Candidate(_at_states(graph, [everywhere] * len(graph.nodes)), candidate.words)
-    parts = [
-        scale_states(
-            to_floats([mode.A for mode in on_turn(family.system, clock, kind).modes]),
-            family.exponents,
-        )
-        for kind in clock.kinds
-    ]
+    parts = matrices_of_kinds(family, clock)
     slowest = [limit_rate(own, Time.DISCRETE) for own in parts]
     limit = max(slowest)
     if not limit < 1:

@@ -36,13 +36,7 @@ from nrs_design.search.drawing import (
 from nrs_design.search.interior_point import maximize, step_cost
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
-from nrs_design.search.sdp import (
-    STEPS,
-    SemidefiniteProgram,
-    pack,
-    packed_columns,
-    unpack,
-)
+from nrs_design.search.sdp import STEPS, SemidefiniteProgram, pack, packed_columns, unpack
 from nrs_design.search.stays import enough_pieces
 from nrs_design.work import Allowance
 
@@ -351,12 +345,7 @@ class FormsProgram:
         return slowest(rates, default=stable)
 
     def roundings(
-        self,
-        solution: Solution,
-        claim: Fraction,
-        digits: Sequence[int],
-        *,
-        errors: bool = False,
+        self, solution: Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
     ) -> Iterator[FormsOnGraph]:
         """Yield roundings of all forms to integers over one denominator.
 

@@ -11,7 +11,6 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import MODES, Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
@@ -21,22 +20,16 @@ from nrs_design.proof.steps import FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.balance import (
-    balance,
-    mean_norm,
-    round_coordinates,
-    scale_states,
-    separating,
+from nrs_design.search.balance import balance, mean_norm, round_coordinates, separating
+from nrs_design.search.branches import (
+    StepGraph,
+    best_words,
+    matrices_of_kinds,
+    round_nodes,
+    turns_graph,
 )
-from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
 from nrs_design.search.drawing import Drawing, FormCoordinates
-from nrs_design.search.family import (
-    Family,
-    free_motions,
-    separating_coordinates,
-    stand_ins,
-    to_floats,
-)
+from nrs_design.search.family import Family, free_motions, separating_coordinates, stand_ins
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graph import Graph, growing_cycles
 from nrs_design.search.polynomial import (
@@ -184,23 +177,15 @@ def _alike(clock: Clock) -> list[tuple[int, int]]:
     return found
 
 
-def _turns(family: Family, clock: Clock) -> list[Array]:
-    """Return the modes of each kind: of the first step of a round, and of the others."""
-    parts = (on_turn(family.system, clock, kind) for kind in clock.kinds)
-    return [
-        scale_states(to_floats([mode.A for mode in part.modes]), family.exponents) for part in parts
-    ]
+def _coordinates(family: Family, clock: Clock) -> Array:
+    """Return the T of every step, which leave the deflection alone.
 
-
-def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
-    """Yield the T of every step, which leave the deflection alone.
-
-    What a mean mode keeps of the state until it is at rest is round in them.
+    The part of the state that a mean mode keeps until rest is round in them.
     """
-    means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
+    means = np.array([own.mean(axis=0) for own in matrices_of_kinds(family, clock)])
     apart = round_coordinates if family.system.contact is None else separating
-    graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
-    yield from map(apart, round_forms(graph))
+    names = [*map(str, clock.kinds)]
+    return round_nodes(StepGraph.of_clock(clock, names, means, clock.kinds), apart)
 
 
 def _limit(family: Family, clock: Clock) -> float:

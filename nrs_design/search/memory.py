@@ -40,13 +40,13 @@ from nrs_design.work import Allowance, Cost
 # The check follows sets of nodes, of which there are as many as words of any length up to that of
 # the memory.
 MOST_WORDS = MAX_SETS // 2
-# A longer memory than this, or than one of this many edges, is not drawn.
-LONGEST, MOST_EDGES = 24, 2048
+# Most steps and edges of a memory.
+MOST_STEPS, MOST_EDGES = 24, 2048
 
 Word = tuple[str, ...]
 Array = NDArray[np.float64]
 
-# Steps of a word, and the work of a program whose forms give the norms.
+# Most steps of a sequence of modes, and work of a program whose forms give the norms.
 LONGEST, WORK = 400, 0.1
 # The least growth that forms show is found to this share of what it is above that of a word.
 SHARE, NEAR = 0.2, 1e-4
@@ -67,7 +67,7 @@ def words(system: SwitchedSystem, length: int) -> list[Word] | None:
 
 def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
     """Return how many words there are of so many letters, and of one more; None for too many."""
-    if length > LONGEST or (found := words(system, length)) is None:
+    if length > MOST_STEPS or (found := words(system, length)) is None:
         return None
     after = following(system)
     edges = sum(len(after[word[-1]]) for word in found)
@@ -124,11 +124,11 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
     if not all(any(name in ends for ends in following(system).values()) for name in names):
         # A mode that nothing leads to ends no word, and a run may begin in it.
         return found
-    for length in range(first, LONGEST + 1 if order <= MAX_MONOMIALS else 0):
+    for length in range(first, MOST_STEPS + 1 if order <= MAX_MONOMIALS else 0):
         if (counts := count_words(system, length)) is None:
-            return found
-        nodes, edges = counts
-        cost, _ = graph_cost(system.order, degree, nodes, edges)
+            break
+        edges = counts[1]
+        cost, _ = graph_cost(system.order, degree, *counts)
         checked = cost.work + 2 * edges * PER_CHECK * order**2
         found[length] = replace(cost, work=checked)
     return found
@@ -198,13 +198,18 @@ def words_in_norms(
         return
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     graph, free = program.drawing.graph, system.switching.is_arbitrary
-    own, places = _edges_of(steps, free=free), [node.place for node in graph.nodes]
-    rows = list[tuple[int, int, int]]()
+    if not free and steps.count > len(index):
+        return  # The graph of steps counts the steps of a stay, and the forms do not.
+    steps_by_ends = zip(steps.sources, steps.targets, steps.modes, strict=True)
+    edge_of = {ends: k for k, ends in enumerate(steps_by_ends)}
+    places, rows = [node.place for node in graph.nodes], list[tuple[int, int, int]]()
     for a, step, b in graph.edges_in_time(system):
-        key = tuple(index[name] for name in ((step.mode,) if free else (places[a], places[b])))
-        if key not in own:
-            return  # A stay of several steps is none of this graph.
-        rows.append((a, b, own[key]))
+        ends = (0, 0, index[step.mode])
+        if not free:
+            ends = index[places[a]], index[places[b]], index[places[b]]
+        if ends not in edge_of:
+            return  # It is a stay of several steps.
+        rows.append((a, b, edge_of[ends]))
     order = np.argsort([a for a, *_ in rows], kind="stable")
     sources, targets, edges = np.array(rows)[order].T
     maps = np.array([program.every[k].M for k in order])
@@ -213,16 +218,6 @@ def words_in_norms(
     T = np.array([round_coordinates(Q) for Q in solution.forms])
     for word, growth in best_words(lifted, allowance, floor, T, LONGEST):
         yield tuple(int(edges[k]) for k in word), growth
-
-
-def _edges_of(steps: StepGraph, *, free: bool) -> dict[tuple[int, ...], int]:
-    """Return the edge of each mode, or of each pair of modes that follow each other."""
-    every = range(len(steps.modes))
-    if free:
-        return {(int(steps.modes[k]),): k for k in every}
-    if steps.count != len(steps.names):
-        return {}
-    return {(int(steps.sources[k]), int(steps.targets[k])): k for k in every}
 
 
 def search_extremal_words(family: Family) -> Candidates[GrowingSequence]:

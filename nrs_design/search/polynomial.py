@@ -5,6 +5,7 @@ Both are known before anything is lifted.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import comb, factorial, prod
 
 import numpy as np
@@ -32,6 +33,20 @@ def highest_degree(variables: int) -> int:
     degrees = range(1, MAX_DEGREE // 2 + 1)
     fitting = (d for d in degrees if comb(variables + d - 1, d) <= MAX_MONOMIALS)
     return max(fitting, default=1)
+
+
+def rising_degrees(variables: int, highest: float) -> Iterator[int]:
+    """Yield halves of degrees to try, up to a highest one.
+
+    Each degree takes about four times the one before, so all lower ones together take a part of
+    the cost of the last one.
+    """
+    last, d = min(highest_degree(variables), highest), 2
+    while d < last:
+        yield d
+        d += max(1, d // 3)
+    if last >= 2:
+        yield int(last)
 
 
 def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:

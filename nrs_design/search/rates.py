@@ -244,45 +244,25 @@ def bisect_position(
 ) -> float:
     """Bisect for the largest feasible position; zero if nothing above the smallest one is.
 
-    Feasible positions come first; there, it is told which position is shown as well, perhaps a
-    larger one. The largest is bracketed to a share of itself, `resolution`, or to the difference
-    `smallest`, whichever is reached first; it ends early when the work is used up. A solver may
-    fail below the largest, so it is looked once at what is just above.
+    Feasible positions come first. For a feasible position, `shown` returns the position that its
+    solution shows, perhaps a larger one; otherwise None. The largest is bracketed to a share of
+    itself, `resolution`, or to the difference `smallest`, whichever is reached first; the search
+    ends early when the work is used up. A solver may fail below the largest, so one position just
+    above is tried.
     """
-    failed: list[float] = []
-
-    def told(position: float) -> float | None:
-        """Keep the positions at which the solver fails."""
-        if (found := shown(position)) is None:
-            failed.append(position)
-        return found
-
-    low = _bisected(0.0, 1.0, told, resolution, smallest)
-    above = min(low * (1 + BEYOND), 1.0)
-    try:
-        found = told(above) if low else None
-    except NotAffordableError:
-        found = None
-    if found is None:
-        return low
-    low = max(above, min(found, 1.0))
-    high = min((position for position in failed if position > low), default=1.0)
-    return _bisected(low, high, told, resolution, smallest)
-
-
-def _bisected(
-    low: float,
-    high: float,
-    shown: Callable[[float], float | None],
-    resolution: float,
-    smallest: float,
-) -> float:
-    """Return the largest position that is found between two, of which the low one is feasible."""
-    while high - low > max(resolution * high, smallest):
-        middle = (low + high) / 2
+    low, high, failed, is_last = 0.0, 1.0, list[float](), False
+    while True:
+        position = (low + high) / 2
+        if high - low <= max(resolution * high, smallest):
+            if is_last or not low:
+                return low
+            position, is_last = min(low * (1 + BEYOND), 1.0), True
         try:
-            found = shown(middle)
+            found = shown(position)
         except NotAffordableError:
-            break
-        low, high = (low, middle) if found is None else (max(middle, min(found, 1.0)), high)
-    return low
+            return low
+        if found is None:
+            failed.append(position)
+        else:
+            low = max(position, min(found, 1.0))
+        high = min((one for one in failed if one > low), default=1.0)

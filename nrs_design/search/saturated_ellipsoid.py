@@ -19,16 +19,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.between import between
-from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import SaturatedEllipsoid
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.saturation import CutOff
 from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
@@ -385,8 +383,7 @@ def search_saturated(
     the arithmetic rounds, ellipsoids that cover that come before others.
     """
     assert system.saturation is not None  # who asks has looked
-    kept, stands = _stand_ins(system)
-    lean = _lean(system, kept)
+    lean, stands = _without_twins(system)
     family, raw = Family.of(lean), SaturatingLoop.of(lean, allowance)
     slowest = SLOWEST[system.time]
     T = _coordinates(lean, family, rate_at(slowest, family.limit, system.time), allowance)
@@ -444,45 +441,26 @@ def log2_of(H: Array) -> int:
     return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
 
 
-def _stand_ins(system: SwitchedSystem) -> tuple[list[int], tuple[int, ...]]:
-    """Return modes that floating point tells apart, and for each mode which of them stands for it.
+def _without_twins(system: SwitchedSystem) -> tuple[SwitchedSystem, tuple[int, ...]]:
+    """Return the system with only those modes that floating point tells apart.
 
-    Modes in contact and free, by their numbers.
+    With the number of the mode that stands for each mode of the whole system, in contact and free.
     """
-    kept: list[int] = []
-    stands: list[int] = []
-    first = 0
-    for modes in (system.modes, system.free):
-        if not modes:
-            continue
-        same = nearly_same(to_floats([mode.A for mode in modes]))
-        kept += [first + k for k in dict.fromkeys(same)]
-        stands += [kept.index(first + k) for k in same]
-        first += len(modes)
-    return kept, tuple(stands)
-
-
-def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
-    """Leave out all modes but some, with what belongs to them."""
-    modes, free = system.modes, system.free
-    own = tuple(m for k, m in enumerate(modes) if k in kept)
-    flying = tuple(m for k, m in enumerate(free, len(modes)) if k in kept)
-    contact = None if system.contact is None else replace(system.contact, free=flying)
-
     assert system.saturation is not None
-    signals = tuple(replace(signal, **_parts(signal, kept)) for signal in system.saturation.signals)
-    return replace(
-        system,
-        modes=own,
-        contact=contact,
-        flights=None,
-        roundings=tuple(replace(item, **_parts(item, kept)) for item in system.roundings),
-        saturation=replace(system.saturation, signals=signals),
-        enclosures=(),
+    same = nearly_same(to_floats([mode.A for mode in system.modes]))
+    if system.free:
+        free = nearly_same(to_floats([mode.A for mode in system.free]))
+        same += [len(system.modes) + k for k in free]
+    kept = sorted({*same})
+    own = system.only({mode.name for k, mode in enumerate(system.every_mode) if k in kept})
+
+    def few(rows: tuple[RationalMatrix, ...]) -> tuple[RationalMatrix, ...]:
+        return tuple(rows[k] for k in kept) if rows else ()
+
+    signals = tuple(
+        replace(item, columns=few(item.columns), rows=few(item.rows), errors=few(item.errors))
+        for item in system.saturation.signals
     )
-
-
-def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
-    """Return what an item has for every mode, for some of them."""
-    parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors")}
-    return {part: tuple(rows[k] for k in kept) for part, rows in parts.items() if rows}
+    saturation = replace(system.saturation, signals=signals)
+    lean = replace(own, flights=None, saturation=saturation, enclosures=())
+    return lean, tuple(map(kept.index, same))

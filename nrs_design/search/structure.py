@@ -37,12 +37,6 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     return replace(system, modes=modes, channels=(), outputs=(), saturation=None, flights=flights)
 
 
-def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:
-    """Return the name of the merged mode that stands for a mode of a system, if there is one."""
-    given = next((mode for mode in system.modes if mode.name == name), None)
-    return next((mode.name for mode in merged.modes if given and mode.A == given.A), None)
-
-
 def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
     """Order the states into blocks such that no block is driven by an earlier one.
 

@@ -58,7 +58,7 @@ def certify(
     two exact computations disagree.
     """
     limits = limits or Limits()
-    allowance = _allowance(limits)
+    allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
     if method is not Method.AUTO and method not in applicable_methods(system):
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
@@ -103,8 +103,10 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     from nrs_design.search.period import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
+    limits = limits or Limits()
+    allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
     with floats_in_silence():
-        family = Family.of(system, _allowance(limits or Limits()))
+        family = Family.of(system, allowance)
     search = examine_suspicious_modes if system.clock is None else search_rounds
     evidence, _ = take_candidate(partial(search, family), system, family.allowance)
     if evidence is None:
@@ -112,10 +114,6 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     if not agrees(system, evidence):
         raise InternalError(DISAGREE)
     return refuted_in(system, (evidence,)) or ""
-
-
-def _allowance(limits: Limits) -> Allowance:
-    return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
 
 def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) -> Certification:

@@ -11,7 +11,6 @@ class Method(StrEnum):
     CONEWISE_POLYNOMIAL = "conewise-polynomial"
     CONEWISE_QUADRATIC = "conewise-quadratic"
     LMI = "lmi"
-    GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MEMORY_POLYNOMIAL = "memory-polynomial"
     MEMORY_QUADRATIC = "memory-quadratic"

@@ -8,6 +8,7 @@ modes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite, log, sqrt
 
@@ -26,7 +27,8 @@ from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_s
 from nrs_design.search.ladder import Facts
 from nrs_design.work import Allowance
 
-RESOLUTION = 5e-4
+# Bracket of a rate, relative to its size; step of a difference, relative to the rate.
+RESOLUTION, DIFFERENCE = 5e-4, 1e-5
 # A rate is bracketed no closer than this share of its distance from the one that is wanted.
 COARSE = 0.03
 # There is more to the best rate than forms show beyond the one that they were asked for.
@@ -53,13 +55,10 @@ class RateSlope:
 
     def change(self, system: SwitchedSystem) -> float:
         """Return by how much the rate of a system nearby is larger, in first order, 1/s."""
-        program, total = self._program, 0.0
-        changed = program.edges_at(system)
-        for k in self._dual.duals:
-            moved = _decrease(program, changed[k], self._dual, k, self._at)
-            own = _decrease(program, program.edges[k], self._dual, k, self._at)
-            total += float(np.sum(self._dual.duals[k] * (moved - own)))
-        return -total / self._per_rate
+        edges = self._program.edges_at(system)
+        moved = _weighted(self._program, edges, self._dual, self._at)
+        own = _weighted(self._program, self._program.edges, self._dual, self._at)
+        return (own - moved) / self._per_rate
 
 
 def may_have_slope(system: SwitchedSystem) -> bool:
@@ -180,31 +179,25 @@ def _shown(program: FormsProgram, solution: Solution) -> float:
     return rate if program.time is Time.CONTINUOUS else (1 - rate) / _period(program)
 
 
-def _decrease(
-    program: FormsProgram, edge: Inequality, dual: DualSolution, k: int, at: float
-) -> NDArray[np.float64]:
-    """Return the inequality of an edge as the rows of the program state it."""
-    N = dual.solution.vanishing[k]
-    form = program.decrease(edge, dual.solution, N, at)
-    return form if edge.is_flow else program.factors(at)[k] * form
+def _weighted(
+    program: FormsProgram, edges: Sequence[Inequality], dual: DualSolution, at: float
+) -> float:
+    """Return the sum of ``trace(W F)`` of some edges, with F as the program states it."""
+    factors, total = program.factors(at), 0.0
+    for k, W in dual.duals.items():
+        edge, solution = edges[k], dual.solution
+        form = program.decrease(edge, solution, solution.vanishing[k], at)
+        total += float(np.sum(W * (form if edge.is_flow else factors[k] * form)))
+    return total
 
 
 def _per_rate(program: FormsProgram, dual: DualSolution, at: float) -> float:
-    """Return what 1/s more does to the margin."""
-    total = 0.0
-    for k, own in dual.duals.items():
-        edge = program.edges[k]
-        if edge.is_flow:
-            Q = dual.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            changed = -2 * float(np.ldexp(1.0, program.unit)) * Q
-        else:
-            Q = dual.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
-            weight = edge.weight(at, 1, program.time)
-            continuous = program.time is Time.CONTINUOUS
-            more = 2 * edge.lasts if continuous else 2 * edge.lasts * _period(program) / at
-            changed = -more * weight * edge.changed(Q)
-        total += float(np.sum(own * changed))
-    return total
+    """Return the change of the margin for 1/s more."""
+    step = DIFFERENCE * max(abs(at), RESOLUTION)
+    ends = (_weighted(program, program.edges, dual, at + side) for side in (-step, step))
+    lower, upper = ends
+    change = (upper - lower) / (2 * step)
+    return change if program.time is Time.CONTINUOUS else -_period(program) * change
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Generic, TypeVar
 
 from numpy.linalg import LinAlgError
 
-from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, bit_length
 from nrs_design.proof.system import SwitchedSystem
@@ -92,16 +91,8 @@ def attempted(
     search: Callable[[], Candidates[AbstractEvidence]],
     system: SwitchedSystem,
     allowance: Allowance,
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+) -> tuple[AbstractEvidence | None, Attempt]:
     """Take the first candidate that holds, and say how it went."""
     start, before = perf_counter(), allowance.charged
     evidence, outcome = take_candidate(search, system, allowance)
-    attempt = Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
-    return () if evidence is None else (evidence,), (attempt,)
-
-
-def check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
-    """Check what was put together from evidence for fewer modes or states."""
-    for statement in statements:
-        if fault := statement.find_fault(system):
-            raise InternalError(f"the search returned evidence that does not hold: {fault}")
+    return evidence, Attempt(name, outcome, perf_counter() - start, allowance.charged - before)

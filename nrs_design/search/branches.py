@@ -221,7 +221,8 @@ class StepGraph:
         # A signal begins with its first mode.
         first = min(jumps, key=lambda k: int(self.modes[word[k]]))
         word = word[first:] + word[:first]
-        if self.count == 1:
+        if not self.has_choice and (self.ways >= 0).all():
+            # Every step is a stay of its own.
             runs = [(mode, len([*run])) for mode, run in groupby(self.modes[word].tolist())]
             return tuple((self.names[mode], Fraction(count)) for mode, count in runs), ()
         starts = [k for k, edge in enumerate(word) if self.ways[edge] >= 0]

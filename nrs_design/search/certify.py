@@ -12,12 +12,12 @@ from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.acceptance import attempted, check_again, take_candidate
+from nrs_design.search.acceptance import attempted, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence, rate_limit
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
-from nrs_design.search.statements import bounds, regions
+from nrs_design.search.statements import asides
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.work import Allowance, Fuse
 
@@ -53,9 +53,8 @@ def certify(
     statement has passed the exact check, and flint's second opinion as far as that goes
     (`nrs_design.certificates.second_opinion`).
 
-    A `DesignError` if the method does not apply; a `ClockError`
-    if the clock stopped the search: what it would have found is not known; an `InternalError` if
-    two exact computations disagree.
+    A `DesignError` if the method does not apply; a `ClockError` if the clock stopped the search:
+    what it would have found is not known; an `InternalError` if two exact computations disagree.
     """
     limits = limits or Limits()
     allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
@@ -81,13 +80,15 @@ def certify(
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
-        for state in (bounds, regions):
-            found, attempts = state(system, allowance, progress)
-            statements += found
-            result = replace(result, attempts=(*result.attempts, *attempts))
-    if merged is not system or len(blocks) > 1:
-        check_again(statements, system)
+        for name, search, own in asides(system, allowance):
+            progress(name)
+            found, attempt = attempted(name, search, system, own)
+            statements += () if found is None else (found,)
+            result = replace(result, attempts=(*result.attempts, attempt))
     for statement in statements:
+        # What is true of blocks and merged modes must be true of all modes.
+        if (merged is not system or len(blocks) > 1) and (fault := statement.find_fault(system)):
+            raise InternalError(f"the search returned evidence that does not hold: {fault}")
         if not agrees(system, statement):
             raise InternalError(DISAGREE)
     with floats_in_silence():
@@ -145,15 +146,14 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
             attempts.append(Attempt(name, spent, 0.0))
             break
         task.progress(name)
-        found, attempt = attempted(name, partial(search, family), system, family.allowance)
-        attempts += attempt
-        if not found:
+        evidence, attempt = attempted(name, partial(search, family), system, family.allowance)
+        attempts.append(attempt)
+        if evidence is None:
             # Nothing that covers the enclosure holds, and no loop of the spec need be there.
             if method is not Method.PERIOD and (corner := _unstable_corner(name, family)):
                 attempts.append(Attempt(ENCLOSURE, f"mode {corner} {WIDE}", 0.0))
                 break
             continue
-        (evidence,) = found
         # Growth that the environment would have to pull for is none that ends the search.
         if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import chain, compress, groupby
+from itertools import chain, compress
 from math import ceil, exp, isinf, log, log2
 
 import numpy as np
@@ -147,9 +147,7 @@ def search_rounds(family: Family) -> Candidates[GrowingSequence]:
         return NOTHING_GROWS
     graph = turns_graph(family, clock)
     for word, growth in best_words(graph, family.allowance.part(WORDS), 1.0):
-        runs = groupby(graph.sequence(word)[0], key=lambda step: step[0])
-        signal = tuple((name, sum((count for _, count in run), Fraction(0))) for name, run in runs)
-        yield from powers(system, signal, (), growth ** len(word))
+        yield from powers(system, *graph.sequence(word), growth ** len(word))
     return NOTHING_GROWS
 
 

@@ -31,14 +31,12 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             return "no common quadratic function exists"
         case Shows.REGION:
             assert system.saturation is not None
-            start, size = system.saturation.start, evidence.start_size
-            unit = f" {start.unit}".rstrip()
-            of = ""
+            start, size, of = system.saturation.start, evidence.start_size, ""
             if size is not None:
-                of = f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
-                of += start.exception
-            beside = _contact(evidence, system) + _unrounded(evidence, system)
-            return f"although signals saturate, decays from rest{of}{beside}"
+                most = f"{lower(size, DIGITS)} {start.unit}".rstrip()
+                of = f" with a {start.name} up to {most}{start.exception}"
+            scope = _contact(evidence, system) + _unrounded(evidence, system)
+            return f"although signals saturate, decays from rest{of}{scope}"
         case _:
             # The signal that grows; what follows from it stands behind a colon, or a sentence.
             claim = evidence.claim_in_scope(system)

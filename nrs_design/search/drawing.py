@@ -33,7 +33,6 @@ Fact = tuple[str, int | None]
 # Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
 # and one more; no fewer than for the first of these times, and no more than for the last.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
-Row = tuple[str, Array]
 
 
 @dataclass(frozen=True)
@@ -324,7 +323,7 @@ class FloatStep:
 
     M: Array
     errors: tuple[tuple[str, int, Array], ...]  # Entry e of z and row q: ``e^2 <= (q z)^2``
-    crossings: tuple[Row, ...]  # Row c: ``delta (c z) <= 0``
+    crossings: tuple[tuple[str, Array], ...]  # Row c: ``delta (c z) <= 0``
     products: tuple[tuple[str, Array, Array], ...]  # Rows l and r: ``(l z) (r z) >= 0``
 
     @classmethod

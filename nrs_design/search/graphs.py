@@ -17,7 +17,7 @@ from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
-from nrs_design.proof.switching import Clock, Stay
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.balance import balance, mean_norm, round_coordinates, separating
@@ -122,7 +122,8 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
-    limit, ended = _limit(family, clock), None
+    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
+    limit, ended = max((growth for _, growth in words), default=0.0), None
     every = [mode.name for mode in system.every_mode]
     kinds = Counter(clock.kind_of(every))
     # At the largest rate itself there is no room for rounding.
@@ -186,12 +187,6 @@ def _coordinates(family: Family, clock: Clock) -> Array:
     apart = round_coordinates if family.system.contact is None else separating
     names = [*map(str, clock.kinds)]
     return round_nodes(StepGraph.of_clock(clock, names, means, clock.kinds), apart)
-
-
-def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the worst word that is found."""
-    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
-    return max((growth for _, growth in words), default=0.0)
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
@@ -366,18 +361,21 @@ def graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnG
 
 
 def left_modes(system: SwitchedSystem) -> tuple[str, ...]:
-    """Return the modes of which every stay is shown."""
+    """Return the modes of which every stay is shown.
+
+    That asks for less than a decrease, but takes longer.
+    """
     stays = system.stays()
-    return tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
 
+    def is_left(mode: Mode) -> bool:
+        stay = stays[mode.name]
+        if stay.longest is None:
+            return False
+        width = float(stay.longest - stay.shortest)
+        few = width < FEW_STAYS
+        if system.time is Time.CONTINUOUS:
+            # Stays that are nearly of one length are enclosed well.
+            few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
+        return few or not is_stable(mode.A, system.time)
 
-def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
-    """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
-    if stay.longest is None:
-        return False
-    width = float(stay.longest - stay.shortest)
-    few = width < FEW_STAYS
-    if system.time is Time.CONTINUOUS:
-        # Stays that are nearly of one length are enclosed well.
-        few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
-    return few or not is_stable(mode.A, system.time)
+    return tuple(mode.name for mode in system.modes if is_left(mode))

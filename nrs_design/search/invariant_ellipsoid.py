@@ -36,9 +36,10 @@ from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
-# Usual shares and the smallest one, relative to the largest; evaluations near the best.
-USUAL, SMALLEST, REFINED = (0.8, 0.38, 0.15, 0.06, 0.024, 0.009), 0.001, 5
-HUGE = 1e300  # Stands for the value where there is no solution
+# Shares that are tried first, relative to the largest; factor between the next ones; number of
+# refinements of the best; smallest share.
+USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.024, 0.009, 0.8), 1.5, 3
+SMALLEST = 0.001
 # How far above the least level found the claimed one lies: the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
@@ -110,7 +111,8 @@ class BoundProgram:
         """Take ellipsoids around the origin, with the square of the level as their level."""
         steps = plain_steps(system, [*map(system.channels.index, channels)], rounding=rounding)
         units = [float(channel.bound) for channel in channels]
-        own = StepUnits.of(frame.T, units, len(system.roundings) * rounding).balanced(steps)
+        units += [1.0] * (len(system.roundings) * rounding)
+        own = StepUnits(frame.T, np.array(units)).balanced(steps)
         program = OneForm.of(steps, own)
         rows = to_floats(output.rows)[:, 0] @ own.T / frame.level
         bounds = tuple(Constraint.bordered(program.basis, row, 1.0) for row in rows)
@@ -122,7 +124,7 @@ class BoundProgram:
         steps, n = list(item.steps(system)), system.order
         T = np.eye(n + 1)
         T[1:, 1:] = frame.T
-        disturbed = StepUnits.of(T, [1.0] * len(item.channels), len(item.roundings))
+        disturbed = StepUnits(T, np.ones(len(item.channels) + len(item.roundings)))
         own = disturbed.balanced(steps)
         ends = {
             name: sign * np.array(row.floats()[0]) @ frame.T / frame.level
@@ -241,26 +243,33 @@ def largest_share(limit: float, time: Time) -> float:
 def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, float]:
     """Return the least value found, and the share that gives it.
 
-    The least value is sought between the neighbours of the best of usual shares. A solver may fail
-    at some of them.
+    Values are followed down from the best of usual shares, and then by parabolas through the three
+    best: a solver that fails at one of them may be right at another.
     """
-    from scipy.optimize import minimize_scalar
-
     tried: dict[float, float] = {}
 
-    def value(log_share: float) -> float:
-        share = float(np.exp(log_share))
-        tried[share] = attempt(share)
-        return min(tried[share], HUGE)
+    def value(share: float) -> float:
+        if share not in tried:
+            tried[share] = attempt(share)
+        return tried[share]
 
-    for share in USUAL:
-        value(np.log(share * top))
-    shares = sorted(tried)
-    k = shares.index(min(tried, key=lambda share: tried[share]))
-    if isfinite(tried[shares[k]]):
-        ends = np.log([shares[max(k - 1, 0)], shares[min(k + 1, len(shares) - 1)]])
-        if k == 0:
-            ends[0] = np.log(SMALLEST * top)
-        minimize_scalar(value, bounds=ends, method="bounded", options={"maxiter": REFINED})
-    best = min(tried, key=lambda share: tried[share])
-    return tried[best], best
+    start = min((s * top for s in USUAL), key=value)
+    best = start
+    for factor in (1 / STEP, STEP):
+        while SMALLEST * top < factor * best < top and value(factor * best) < value(best):
+            best *= factor
+        if best != start:
+            break
+    for _ in range(REFINED if isfinite(value(best)) else 0):
+        shares = sorted(tried)
+        k = shares.index(best)
+        beside = shares[max(k - 1, 0) : k + 2]
+        values = [value(s) for s in beside]
+        if len(values) < 3 or not np.isfinite(values).all():
+            break
+        curve = np.polyfit(np.log(beside) - np.log(best), values, 2)
+        if not curve[0] > 0:
+            break
+        value(best * float(np.exp(-curve[1] / (2 * curve[0]))))
+        best = min(tried, key=lambda share: tried[share])
+    return value(best), best

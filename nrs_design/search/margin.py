@@ -122,8 +122,7 @@ class MarginAxis:
         for number in up:
             if idle <= 0 or any(n <= number and self.is_refuted(n) for n in self.found):
                 break
-            if isinstance(fault := self._assembled(number), str):
-                self.found[number] = fault
+            if not self._makes_system(number):
                 inside = max(n for n, one in self.found.items() if not isinstance(one, str))
                 self.at(self._sharpened(inside, number, self._makes_system, steps))
                 break
@@ -170,9 +169,10 @@ class MarginAxis:
             return error.message
 
     def _makes_system(self, number: Fraction) -> bool:
-        if isinstance(fault := self._assembled(number), str):
-            self.found[number] = fault
-        return not isinstance(fault, str)
+        system = self._assembled(number)
+        if isinstance(system, str):
+            self.found[number] = system
+        return not isinstance(system, str)
 
     def _why_none(self) -> str:
         """Say where numbers that are not refuted end, and why there."""

@@ -39,11 +39,6 @@ class StepUnits:
     T: Array  # Shape (n, n). Its leading block is that of free motion.
     others: Array  # Units of the disturbances, then of the errors
 
-    @classmethod
-    def of(cls, T: Array, disturbances: Sequence[float], errors: int) -> StepUnits:
-        """Take units of disturbances, and ones of errors."""
-        return cls(T, np.array([*disturbances, *[1.0] * errors]))
-
     def rows(self, rows: Array, states: int) -> Array:
         """Return what rows over state, disturbances and errors are in these coordinates."""
         moved = rows[..., :states] @ self.T[:states, :states]

@@ -94,15 +94,14 @@ def work_of_checks(system: SwitchedSystem, degree: int) -> float:
 
 
 def _count_decreases(system: SwitchedSystem) -> int:
+    """Return the number of inequalities of a form for each mode."""
     counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
     return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
 
 
 def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
-    if stay.longest is None:
-        return 1
-    if system.time is Time.CONTINUOUS:
-        return SAMPLES
+    if stay.longest is None or system.time is Time.CONTINUOUS:
+        return 1 if stay.longest is None else SAMPLES
     return int(stay.longest) - int(stay.shortest) + 1
 
 

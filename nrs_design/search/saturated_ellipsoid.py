@@ -299,7 +299,7 @@ class _Search:
         rows = [[[Fraction(float(v)) for v in h] for h in H] for H in self.loop.by_mode(held.H)]
         system = between(self.system, rows, rounding=self.rounding)
         steps = plain_steps(system, rounding=self.rounding)
-        own = StepUnits.of(held.T, (), len(system.roundings) * self.rounding)
+        own = StepUnits(held.T, np.ones(len(system.roundings) * self.rounding))
         return OneForm.of(steps, own.balanced(steps))
 
     def solve(
@@ -424,7 +424,7 @@ def _coordinates(
     T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
     if not np.isfinite(T).all():
         return None
-    program = OneForm.of(plain_steps(system, rounding=False), StepUnits.of(T, (), 0))
+    program = OneForm.of(plain_steps(system, rounding=False), StepUnits(T, np.zeros(0)))
     one, basis = np.eye(program.order), program.basis
     within = [Constraint(0 * one, basis, 0 * one), Constraint(one, -basis)]
     found = program.solve(share_of(rate, system.time), within, allowance, 1.0)

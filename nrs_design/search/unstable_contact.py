@@ -79,10 +79,12 @@ class _Loop:
 
     @classmethod
     def of(cls, family: Family) -> _Loop:
-        system, contact, flights = family.system, family.system.contact, family.system.flights
-        free = system.free
-        touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
-        flying = {m.name for m in free} if flights is None else {*flights.flying}
+        system, flights = family.system, family.system.flights
+        if flights is not None:
+            touching, flying, rows = {*flights.touching}, {*flights.flying}, flights.pulls
+        else:
+            touching, flying = ({m.name for m in part} for part in (system.modes, system.free))
+            rows = () if system.contact is None else system.contact.pulls
         every, clock = system.every_mode, system.clock
         of_clock = [0] * len(every) if clock is None else clock.kind_of(m.name for m in every)
         turn_of = dict(zip((mode.name for mode in every), of_clock, strict=True))
@@ -92,8 +94,6 @@ class _Loop:
             kinds.setdefault(kind, []).append(mode)
         modes = [pair for group in kinds.values() for pair in distinct_modes(group)]
         names = tuple(mode.name for mode, _ in modes)
-        rows = [] if contact is None else contact.pulls
-        rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
         turns = np.zeros((1, len(names)), dtype=np.int64)
         if clock is not None:

@@ -56,14 +56,16 @@ def search_value(family: Family) -> Candidates[GrowingSequence]:
     if (count := _count(system)) is None:
         return ENCLOSED
     slack = SLACK * max(float(np.abs(matrices).max()), 1.0)
-    corners = _corners(system, matrices)
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    # Shape (sets, corners, n, n)
+    corners = matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
     least = COARSE_GRID if count == 1 else FEWEST
     fitting = int((EVALUATIONS / len(corners)) ** (1 / count))
     grid = np.linspace(0, 1, max(least, min(GRID, fitting)))
-    family.allowance.take(
-        _cost(len(corners), len(grid) ** count, corners.shape[-1], count),
-        f"looking at {len(grid) ** count} values",
-    )
+    values = len(grid) ** count
+    looks = len(corners) * values + PEAKS * CLOSELY * count
+    work = looks * (PER_MATRIX + PER_PRODUCT * corners.shape[-1] ** 3)
+    family.allowance.take(Cost(work), f"looking at {values} values")
     found = False
     for k, start in _peaks(corners, grid, count, system.time):
         shares, growth = _refined(corners[k], start, float(grid[1]), system.time)
@@ -102,23 +104,12 @@ def _count(system: SwitchedSystem) -> int | None:
     return count if odd is None else None
 
 
-def _cost(sets: int, values: int, order: int, count: int) -> Cost:
-    """Predict what looking at all modes takes, at a grid of values and closely at the peaks."""
-    return Cost((sets * values + PEAKS * CLOSELY * count) * (PER_MATRIX + PER_PRODUCT * order**3))
-
-
 def _at(
     shares: Shares, candidates: Candidates[GrowingSequence]
 ) -> Iterator[Candidate[GrowingSequence]]:
     """Make what is found about the system at a value evidence about the parameters."""
     for candidate in candidates:
         yield Candidate(replace(candidate.evidence, shares=shares))
-
-
-def _corners(system: SwitchedSystem, matrices: Array) -> Array:
-    """Return the modes of every set, shape (sets, corners, n, n)."""
-    index = {mode.name: k for k, mode in enumerate(system.modes)}
-    return matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
 
 
 def _growth(corners: Array, shares: Array, time: Time) -> Array:

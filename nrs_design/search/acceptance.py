@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Generic, TypeVar
 
 from numpy.linalg import LinAlgError
 
+from nrs_design.errors import InternalError
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, bit_length
 from nrs_design.proof.system import SwitchedSystem
@@ -96,3 +97,10 @@ def attempted(
     start, before = perf_counter(), allowance.charged
     evidence, outcome = take_candidate(search, system, allowance)
     return evidence, Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
+
+
+def check_again(statements: Iterable[AbstractEvidence], system: SwitchedSystem) -> None:
+    """Check evidence that was put together from evidence for fewer modes or states."""
+    for statement in statements:
+        if fault := statement.find_fault(system):
+            raise InternalError(f"the search returned evidence that does not hold: {fault}")

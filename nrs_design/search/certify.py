@@ -12,7 +12,7 @@ from nrs_design.errors import DISAGREE, DesignError, InternalError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.acceptance import attempted, take_candidate
+from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence, rate_limit
 from nrs_design.search.ladder import applicable_methods, steps
@@ -85,12 +85,10 @@ def certify(
             found, attempt = attempted(name, search, system, own)
             statements += () if found is None else (found,)
             result = replace(result, attempts=(*result.attempts, attempt))
-    for statement in statements:
-        # What is true of blocks and merged modes must be true of all modes.
-        if (merged is not system or len(blocks) > 1) and (fault := statement.find_fault(system)):
-            raise InternalError(f"the search returned evidence that does not hold: {fault}")
-        if not agrees(system, statement):
-            raise InternalError(DISAGREE)
+    if merged is not system or len(blocks) > 1:
+        check_again(statements, system)
+    if not all(agrees(system, statement) for statement in statements):
+        raise InternalError(DISAGREE)
     with floats_in_silence():
         limit = rate_limit(system)
     return replace(result, system=system, statements=statements, rate_limit=limit)

@@ -28,15 +28,15 @@ from nrs_design.work import Allowance, Cost
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Steps of a word, products of a length, and all of them.
+# Largest numbers of steps of a word, of products of one length, and of all products.
 MAX_LENGTH, MAX_PRODUCTS, MOST_PRODUCTS = 64, 20_000, 150_000
 # Entries of the products of a length.
 MAX_ENTRIES = 2_000_000
-# A word is better if it grows by this share more.
+# Least relative gain of a better word.
 BETTER = 1e-6
 # Work for the norm and the eigenvalues of a product, and per multiplication in them.
 PER_MATRIX, PER_PRODUCT = 1e-5, 6e-8
-# Norms of the nodes: what a mean word keeps is round, and so often it is followed.
+# Norms of the nodes: part of a mean word that is kept, and number of steps along it.
 KEPT, SWEEPS = 0.9, 40
 FLAT = 1e-9
 # Larger graphs are not searched.
@@ -133,20 +133,20 @@ def mean_forms(maps: Array, sources: Indices, targets: Indices, count: int) -> A
 
 @dataclass(frozen=True)
 class StepGraph:
-    """A node is a mode with the steps made in it; an edge is one more step, in it or another one.
+    """Graph of steps: a node is a mode with a number of steps in it, an edge is one more step.
 
     Edges are in the order of their sources.
     """
 
-    names: tuple[str, ...]  # Of the modes
-    # Of each edge: nodes, the mode of its step, which reset leads there (-1: the mode goes on), and
-    # what becomes of the state.
+    names: tuple[str, ...]  # Names of the modes
+    # Of each edge: its nodes, the mode of its step, the reset before it (-1: the mode goes on), and
+    # the map of the state.
     sources: Indices
     targets: Indices
     modes: Indices
     ways: Indices
     maps: Array  # Shape (edges, n, n)
-    count: int  # Of the nodes
+    count: int  # Number of nodes
     has_choice: bool  # Some switch has more than one reset
 
     @classmethod

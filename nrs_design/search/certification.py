@@ -1,4 +1,4 @@
-"""What a search is asked for and what it found: nouns, which import no numerical library."""
+"""Limits and results of a search: nouns that import no numerical library."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class Limits:
     budget: float = 60.0
     memory: float = 2 * GIGABYTE  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
-    more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
-    # What a goal asks for, in 1/s; a search goes on until it is proved, or cannot be.
+    more: bool = True  # Search for bounds and regions after a proof of stability
+    # Goal in 1/s: a search goes on until this rate is proved, or out of reach.
     decay_rate: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One rung: what was tried, how it ended, its time in s, and its work in units.
+    """One rung: its name, outcome, time in s, and work in units.
 
     The time differs from run to run, and decides nothing.
     """
@@ -43,10 +43,10 @@ class Attempt:
 class Certification(AbstractChecked):
     """The verdict on one system, with everything that was shown on the way."""
 
-    system: SwitchedSystem  # What the verdict is about
+    system: SwitchedSystem  # Subject of the verdict
     verdict: Verdict  # Proved, refuted or inconclusive
     common_quadratic: CommonQuadraticStatus  # Whether a common quadratic function exists
-    method: str  # The rung that settled it, or what was asked for
+    method: str  # The deciding rung, or the requested method
     # The deciding evidence first, if any. Each has passed the exact check.
     statements: tuple[AbstractEvidence, ...]
     attempts: tuple[Attempt, ...]  # Every rung in order
@@ -56,5 +56,5 @@ class Certification(AbstractChecked):
 
     @property
     def is_open(self) -> bool:
-        """Whether it is neither proved nor refuted, nor refuted in some contact."""
+        """Whether the system is neither proved nor refuted, in any contact."""
         return self.verdict is Verdict.INCONCLUSIVE and self.refuted_in is None

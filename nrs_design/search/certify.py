@@ -21,7 +21,7 @@ from nrs_design.search.statements import asides
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.work import Allowance, Fuse
 
-# Share of what is left, for a faster decay than the first proof shows.
+# Share of the rest of the budget, for a faster decay than that of the first proof.
 CLIMBING_ON = 0.5
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
@@ -32,7 +32,7 @@ WIDE = (
 
 @dataclass(frozen=True)
 class _Task:
-    """What is asked for, and what may be spent on it."""
+    """Request for a search, with its budget."""
 
     method: Method
     limits: Limits
@@ -66,7 +66,7 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
     task = _Task(method, limits, allowance, progress)
-    # Lost contact and what the arithmetic rounds are matters of the whole state.
+    # Loss of contact and rounding errors concern the whole state.
     simple = simple and system.contact is None and system.flights is None
     simple = simple and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
@@ -152,12 +152,12 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
                 attempts.append(Attempt(ENCLOSURE, f"mode {corner} {WIDE}", 0.0))
                 break
             continue
-        # Growth that the environment would have to pull for is none that ends the search.
+        # Growth by a pull of the environment does not end the search.
         if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)
             continue
         if best is None and _may_be_faster(evidence, system, limits):
-            # What is looked for behind this must not starve of it.
+            # Later rungs need a part of the budget.
             family = replace(family, allowance=allowance.part(CLIMBING_ON))
         if best is None or _is_faster(evidence, best[1], system):
             best = name, evidence
@@ -169,7 +169,7 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
 
 
 def _may_be_faster(evidence: AbstractEvidence, system: SwitchedSystem, limits: Limits) -> bool:
-    """Tell whether a proof shows less decay than is asked for, and another may show it."""
+    """Tell whether the required decay rate is not proved yet, and within reach."""
     wanted, rate = limits.decay_rate, evidence.proved_rate(system)
     if wanted is None or not limits.optimize_rate or evidence.shows is not Shows.STABILITY:
         return False

@@ -140,7 +140,7 @@ def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:
 
 @contextmanager
 def floats_in_silence() -> Iterator[None]:
-    """Let floating point over- and underflow without a word: it only chooses what to try."""
+    """Silence over- and underflow: floating point only proposes."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)
         yield

@@ -1,4 +1,4 @@
-"""Which graph is drawn for which system, and how its program is asked for rates (untrusted)."""
+"""Graphs of systems, and searches for rates of their forms (untrusted)."""
 
 from __future__ import annotations
 
@@ -54,18 +54,18 @@ BITS_OF_STAYS = (12, 32, 60)
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
 ANY_RATE = Fraction(1)
-# The mean of all modes of a round may grow: what is kept of it then is this.
+# Largest contraction of the mean of all modes of a round, which may grow.
 KEPT = 0.99
-# Where more conditions than this are to be checked, what the arithmetic rounds is left out.
+# Largest number of checked conditions with rounding errors.
 MOST_ROUNDED = 250
-# Numbers of steps that are each shown for a mode that is stable, too.
+# Largest number of stays that are shown one by one for a stable mode.
 FEW_STAYS = 64
 # Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
 # ago.
 FEW_STATES, LONG_AGO = 12, 2
-# Share of what is left for words that limit the rate.
+# Share of the rest of the budget for words that limit the rate.
 WORDS = 0.1
-# The largest rate, where it was not asked for, to this share of it.
+# Relative resolution of the largest rate where it is not requested.
 ROUGH = 0.3
 GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
@@ -76,7 +76,7 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for each mode, in contact and in free motion."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    # What is left of the budget is for simpler functions in kept contact.
+    # The rest of the budget is for simpler functions in kept contact.
     allowance = family.allowance.part(0.25)
     nodes = len(family.system.every_mode)
     allowance.require(Cost(PER_EDGE * 2 * nodes**2), f"a graph of {2 * nodes**2} edges")

@@ -1,4 +1,4 @@
-"""The ladder: which searches there are, what they can decide, and in which order they are tried."""
+"""The ladder: all searches in their order, with the systems that they can decide."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class Rung:
     first: float = inf
     # Costs by length, for a rung whose forms have a memory of ever more steps.
     lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
-    degree: int = 2  # Of these forms
+    degree: int = 2  # Degree of these forms
     clocked: bool = False  # Whether the rung is for systems with a clock, and for no others
     # Whether growth in kept contact refutes the result of the rung, or is it.
     in_kept_contact: bool = True
@@ -338,7 +338,7 @@ LADDER: tuple[Rung, ...] = (
 
 
 def applicable_methods(system: SwitchedSystem) -> set[Method]:
-    """Return what can be asked for, given the system's kind of switching and time."""
+    """Return the methods that apply to a system."""
     facts = Facts.of(system)
     return {rung.method for rung in LADDER if rung.method is not None and rung.can_decide(facts)}
 

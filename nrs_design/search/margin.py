@@ -1,4 +1,4 @@
-"""How far along an axis there is a proof, and from where on a refutation.
+"""Largest number on an axis with a proof, and smallest number with a refutation.
 
 A number on an axis makes a system: a scale of ranges, a delay, a period, a number of misses, a
 dwell time with the opposite sign. The larger it is, the more has to hold. Numbers are decided by
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
     from nrs_design.search.certification import Certification
 
-# Bisections of an end; a refuted one is slow to look for, as beside it nothing is decided.
+# Bisections of an end; refuted ends are slow, as no verdict is found next to them.
 STEPS, PERIOD_STEPS, DWELL_STEPS, REFUTED_STEPS = 8, 4, 12, 6
 # Ranges are stretched by up to this, without a proof no more than so often; periods are doubled or
 # halved so often.
 LARGEST_SCALE, IDLE, DOUBLINGS = 64, 3, 4
 # An exact test of a mode with more samples on their way takes too long.
 FARTHEST_DELAY = 32
-# Proofs for ever shorter dwell times, but none for zero: enough of them.
+# Halvings of a dwell time, where ever shorter ones are proved but zero is not.
 HALVINGS = 64
 
 Assemble = Callable[[Fraction], SwitchedSystem]
@@ -56,7 +56,7 @@ class Bracket:
 class CommandMargin:
     """Disturbances under which the force limit is proved to be kept, and those that break it."""
 
-    limit: Fraction  # Of the force, in N m
+    limit: Fraction  # Force limit in N m
     # By disturbance: kept up to the first number, in the proportion in which the spec declares
     # them; broken by a simulated run at the second one; with the unit.
     bounds: Mapping[str, tuple[Fraction, Fraction, str]]
@@ -64,7 +64,7 @@ class CommandMargin:
 
 @dataclass(frozen=True)
 class MarginBrackets:
-    """What `--margin` finds beside the box of ranges."""
+    """Brackets of `--margin` beside the box of ranges."""
 
     # Longest delay of the force sample, from the shortest declared one on; None without sampling.
     delay: Bracket | None
@@ -75,7 +75,7 @@ class MarginBrackets:
 
 @dataclass(frozen=True)
 class MarginAxis:
-    """The numbers that were tried, each once, and what was found there."""
+    """Numbers on an axis that were tried, each once, with the results."""
 
     assemble: Assemble
     certify: Certify
@@ -175,7 +175,7 @@ class MarginAxis:
         return not isinstance(system, str)
 
     def _why_none(self) -> str:
-        """Say where numbers that are not refuted end, and why there."""
+        """Name the largest number that was tried without a refutation, and why the search ended."""
         longest = max((n for n, one in self.found.items() if not isinstance(one, str)))
         beyond = min((n for n in self.found if n > longest), default=None)
         why = "the search ends there"
@@ -324,7 +324,7 @@ def find_shortest_dwell(
 
 
 def _doubled(start: Fraction, most: Fraction) -> Iterable[Fraction]:
-    """Yield numbers beyond a start, twice as large each, and at last the largest."""
+    """Yield the doubles of a start up to a largest number."""
     while start < most:
         start = min(2 * start or Fraction(1), most)
         yield start
@@ -360,7 +360,7 @@ def _fastest_time(system: SwitchedSystem) -> Fraction:
 
 
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:
-    """Return what the disturbances may be for the limit of an output, by proportion.
+    """Return bounds of the disturbances for the limit of an output, by proportion.
 
     `reached` is what the output of a simulated run reaches under the disturbances of a checked
     bound.

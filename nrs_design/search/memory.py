@@ -1,4 +1,4 @@
-"""Forms that remember the last steps: a node for each word of places (untrusted).
+"""Forms with a memory of the last steps: a node for each sequence of places (untrusted).
 
 Such a graph is path-complete for words of any length (Ahmadi, Jungers, Parrilo and Roozbehani, SIAM
 Journal on Control and Optimization 52, 2014, section 6); under rules its words are those that the
@@ -37,8 +37,7 @@ from nrs_design.search.polynomial import PER_CHECK, form_sizes, graph_cost
 from nrs_design.search.rates import POLYNOMIAL, propose
 from nrs_design.work import Allowance, Cost
 
-# The check follows sets of nodes, of which there are as many as words of any length up to that of
-# the memory.
+# The check follows sets of nodes, one for each sequence up to the length of the memory.
 MOST_WORDS = MAX_SETS // 2
 # Most steps and edges of a memory.
 MOST_STEPS, MOST_EDGES = 24, 2048
@@ -48,15 +47,15 @@ Array = NDArray[np.float64]
 
 # Most steps of a sequence of modes, and work of a program whose forms give the norms.
 LONGEST, WORK = 400, 0.1
-# The least growth that forms show is found to this share of what it is above that of a word.
+# Resolution of the least growth of forms, relative to its distance from the growth of a word.
 SHARE, NEAR = 0.2, 1e-4
 HALVINGS = 12
-# What forms are to show at first, where a word that grows by one is sought, and then.
+# Upper bounds of the growth that are tried in turn.
 BOUNDS = (1.05, 1.5, 6.0)
 
 
 def words(system: SwitchedSystem, length: int) -> list[Word] | None:
-    """Return the words of places of so many letters; None for too many."""
+    """Return all sequences of places of a length; None if there are too many."""
     after = following(system)
     found: list[Word] = [(name,) for name in after]
     for _ in range(length - 1):
@@ -66,7 +65,7 @@ def words(system: SwitchedSystem, length: int) -> list[Word] | None:
 
 
 def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
-    """Return how many words there are of so many letters, and of one more; None for too many."""
+    """Return the numbers of sequences of a length and of one more; None if too many."""
     if length > MOST_STEPS or (found := words(system, length)) is None:
         return None
     after = following(system)
@@ -88,7 +87,7 @@ def following(system: SwitchedSystem) -> dict[str, list[str]]:
 
 
 def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing:
-    """Draw a node for each word of so many steps; the degree is half that of the forms.
+    """Draw a node for each sequence of a length; the degree is half that of the forms.
 
     Without rules, the letter that a step adds is its mode; under rules, the mode that it leads to.
     """
@@ -114,7 +113,7 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
 
 
 def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[int, Cost]:
-    """Return how many steps forms of degree 2d may remember, with what that takes.
+    """Return possible lengths of the memory of forms of degree 2d, with their costs.
 
     In discrete time, and no fewer steps than `first`.
     """
@@ -135,12 +134,12 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
 
 
 def quadratic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of quadratic forms; under rules, those of the modes remember one step."""
+    """Return `memories` of quadratic forms; under rules, forms of modes have a memory of one."""
     return memories(system, first=1 if system.switching.is_arbitrary else 2)
 
 
 def quartic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of forms of degree 4."""
+    """Return `memories` of forms of degree 4."""
     return memories(system, 2) if system.order > 1 else {}
 
 
@@ -221,7 +220,7 @@ def words_in_norms(
 
 
 def search_extremal_words(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a word that grows, in the norms of forms that remember some steps."""
+    """Search for a growing sequence of modes, in the norms of forms with a memory."""
     system, allowance = family.system, family.allowance
     fitting = [length for length, cost in memories(system).items() if cost.work <= WORK]
     if not fitting or not np.isfinite(family.matrices).all():

@@ -1,4 +1,4 @@
-"""How high the degrees of forms may rise, and what their programs take.
+"""Degrees of forms, and costs of their programs.
 
 Both are known before anything is lifted.
 """
@@ -55,7 +55,7 @@ def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
 
 
 def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cost, str]:
-    """Predict the same for all modes, and some of free motion."""
+    """Predict the cost of a form of degree 2d for all modes, and some of free motion."""
     n, modes = system.order, len(system.modes)
     (order, own, forms), (inner, _, flying) = (form_sizes(k, degree) for k in (n, n - 1))
     shared = own + 1
@@ -66,14 +66,14 @@ def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cos
 
 
 def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
-    """Return how many monomials there are, forms of them, and forms that vanish."""
+    """Return the numbers of monomials, of forms of them, and of forms that vanish."""
     order = comb(variables + degree - 1, degree)
     own = order * (order + 1) // 2
     return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)
 
 
 def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict what a form of degree 2d for each mode takes; say for what."""
+    """Predict the cost of a form of degree 2d for each mode, with its name."""
     order = max(mode.A.shape[0] for mode in system.modes)
     return graph_cost(order, degree, len(system.modes), _count_decreases(system))
 

@@ -40,7 +40,7 @@ Array = NDArray[np.float64]
 # refinements of the best; smallest share.
 USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.024, 0.009, 0.8), 1.5, 3
 SMALLEST = 0.001
-# How far above the least level found the claimed one lies: the nearer, the harder to round.
+# Claimed levels relative to the least level; the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
 STEPS = 4000

@@ -29,17 +29,17 @@ from nrs_design.work import Allowance
 
 # Bracket of a rate, relative to its size; step of a difference, relative to the rate.
 RESOLUTION, DIFFERENCE = 5e-4, 1e-5
-# A rate is bracketed no closer than this share of its distance from the one that is wanted.
+# Resolution of a rate, relative to its distance from the required rate.
 COARSE = 0.03
-# There is more to the best rate than forms show beyond the one that they were asked for.
+# Next step of the rate, relative to the last gain.
 FURTHER = 1.5
 # Modes are made to decay at least as a contraction to this share.
 CALM = 0.999
-# How far below the best rate slopes are taken, as shares of it.
+# Distances below the best rate at which slopes are taken, relative to the rate.
 BELOW = (0.0, 1e-4, 1e-3, 1e-2)
 # Growth is looked at up to this many times the decay of the slowest mode.
 FASTEST_GROWTH = 64.0
-# Shares beside one that was the best nearby.
+# Shares relative to the best share of a system nearby.
 BESIDE = (0.6, 1.0, 1.6)
 
 
@@ -51,10 +51,10 @@ class RateSlope:
     _program: FormsProgram
     _dual: DualSolution
     _at: float  # As the program counts rates
-    _per_rate: float  # What the margin changes by for 1/s
+    _per_rate: float  # Change of the margin for 1/s more
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the rate of a system nearby is larger, in first order, 1/s."""
+        """Return the change of the rate for a system nearby, in first order, 1/s."""
         edges = self._program.edges_at(system)
         moved = _weighted(self._program, edges, self._dual, self._at)
         own = _weighted(self._program, self._program.edges, self._dual, self._at)
@@ -90,7 +90,7 @@ def rate_slope(
         best = _best(program, limit, guess, resolution, allowance, wanted)
         if best is None:
             return None
-        # Where the margin is nearly nil, its slope is that of noise.
+        # The slope of a vanishing margin is noise.
         for below in BELOW:
             at = _counted(best - below * max(abs(best), resolution), program)
             dual = program.solve_dual(at, allowance)
@@ -205,13 +205,13 @@ class ForceSlope:
     """The least bound that is found, and how it changes with small changes of the modes."""
 
     level: float  # SI units of the output
-    share: float  # Of the disturbances; a guess for systems nearby
+    share: float  # Share of the disturbances; a guess for systems nearby
     _output: Output
     _frame: Frame  # Which stays for small changes
     _allowance: Allowance
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the logarithm of the bound of a system nearby is larger."""
+        """Return the change of the logarithm of the bound for a system nearby."""
         with floats_in_silence():
             program = BoundProgram.around(system, system.channels, self._output, self._frame)
             found = program.solve(self.share, self._allowance)

@@ -49,11 +49,11 @@ Array = NDArray[np.float64]
 H_DIGITS = 40
 # The slowest decay that counts, as a share of the fastest there is; what is rounded needs room.
 SLOWEST = {Time.CONTINUOUS: 1e-3, Time.DISCRETE: 0.02}
-# By how much a start stays below the largest one: nearer to it there is no decay to speak of.
+# Size of a start relative to the largest one, at which there is hardly any decay.
 BELOW = 0.99
 # A start just inside of a region leaves nothing for rounding.
 ENOUGH = 0.999
-# How far H is taken from what the signals are while nothing is cut off, the farthest first.
+# Distances of H from the unsaturated signals, the farthest first.
 WAYS = (1.0, 0.8, 0.5, 0.0)
 # Steps of a bisection of the rate, and shares of the largest one that are claimed.
 BISECTIONS = 8
@@ -72,7 +72,7 @@ class SaturatingLoop:
     # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
     # where it is.
     A: Array
-    free: int  # How many of them are free
+    free: int  # Number of free modes
     columns: Array  # Shape (k, s, n). What every signal does.
     rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
     starts: Array  # Shape (c, n). States at the size one.
@@ -84,7 +84,7 @@ class SaturatingLoop:
     def of(cls, system: SwitchedSystem, allowance: Allowance) -> SaturatingLoop:
         """Convert a system of which something saturates."""
         saturation = system.saturation
-        assert saturation is not None  # who asks has looked
+        assert saturation is not None  # only saturating systems are searched
         free = () if system.contact is None else system.contact.free
         limits = np.array([float(s.limit) for s in saturation.signals])
         A = to_floats([mode.A for mode in system.every_mode])
@@ -167,7 +167,7 @@ class SaturatingLoop:
             yield k, B
 
     def is_free(self, k: int) -> bool:
-        """Tell whether a mode is one of free motion."""
+        """Tell whether a mode is free motion."""
         return k >= len(self.A) - self.free
 
 
@@ -262,7 +262,7 @@ class _Held:
 
     H: Array
     T: Array
-    size: float  # Of the largest start
+    size: float  # Size of the largest start
 
 
 @dataclass(frozen=True)
@@ -273,8 +273,8 @@ class _Search:
     T: Array
     loop: SaturatingLoop
     limit: float  # The fastest rate there is
-    stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
-    rounding: bool = False  # Whether what the arithmetic rounds is covered
+    stands: tuple[int, ...]  # Index of the equal of each mode of the whole system
+    rounding: bool = False  # Whether rounding errors are covered
 
     def rate(self, position: float) -> float:
         """Return the rate at a position from 0, mere stability, to 1."""
@@ -288,7 +288,7 @@ class _Search:
         return np.tile(limits, self.loop.held // len(limits))
 
     def rounded_rows(self, H: Array, way: float) -> Array:
-        """Return rows between what the signals are while nothing is cut off and others, rounded."""
+        """Return rounded rows between those of the unsaturated signals and others."""
         moved = self.loop.shared + way * (H - self.loop.shared)
         found = self.limits[:, None] * (moved @ np.linalg.inv(self.T))
         log2 = log2_of(found)
@@ -382,7 +382,7 @@ def search_saturated(
     The start is the wanted one; without one, or where it is out of reach, nearly the largest. Where
     the arithmetic rounds, ellipsoids that cover that come before others.
     """
-    assert system.saturation is not None  # who asks has looked
+    assert system.saturation is not None  # only saturating systems are searched
     lean, stands = _without_twins(system)
     family, raw = Family.of(lean), SaturatingLoop.of(lean, allowance)
     slowest = SLOWEST[system.time]

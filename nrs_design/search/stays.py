@@ -18,7 +18,7 @@ from nrs_design.search.drawing import FormCoordinates
 
 Array = NDArray[np.float64]
 
-# Of each number of pieces in turn it is predicted whether they are enough.
+# Numbers of pieces that are tried in turn.
 PIECES = (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
 # Predictions leave out what is rounded: this is left for it.
 SAFE = 1.02
@@ -32,7 +32,7 @@ def round_stays(system: SwitchedSystem, leaving: Collection[str]) -> dict[str, F
     """
     scales = {mode.name: balance(np.array([mode.A.floats()])) for mode in system.modes}
     number, edges = {name: k for k, name in enumerate(scales)}, [*system.edges()]
-    # Modes may differ in their number of states: what is left of a map is zero.
+    # Maps of modes with fewer states are padded by zeros.
     n = max(map(len, scales.values()))
     maps = np.zeros((len(edges), n, n))
     for k, edge in enumerate(edges):
@@ -87,7 +87,7 @@ def enough_pieces(system: SwitchedSystem, graph: FormsOnGraph) -> int | None:
 def _pieces_of(
     system: SwitchedSystem, edge: Edge, before: Array, after: Array, rate: float, first: int
 ) -> int | None:
-    """Return which number of pieces is enough for the stays before a switch, from one of them."""
+    """Return the index of a sufficient number of pieces before a switch, from a first index."""
     from scipy.linalg import expm
 
     stay, n = system.stays()[edge.source.name], len(before)

@@ -41,7 +41,7 @@ SLACK = 1e-9
 # Shares at which switching is looked at: the ends have no mixture rung of their own. Of several
 # parameters, all together or each at its own.
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
-# Of averages of modes: shares of two, how many pairs, and how many others.
+# Averages of modes: shares of two, number of pairs, and number of others.
 PAIR_SHARES, MAX_PAIRS, RANDOM_MIXTURES = 128, 300, 2000
 # Entries of the averages that are looked at together.
 CHUNK_ENTRIES = 2_000_000
@@ -87,7 +87,7 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
         return "not tried: that takes two modes at each value, and no resets"
     if (count := _count(system)) is None:
         return ENCLOSED
-    # There are many values, and the periods of each could take all that is left.
+    # The periods of each value could take the whole budget.
     allowance = family.allowance.part(0.5)
     for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
         at_shares = Family.of(system_at(system, shares), allowance)
@@ -98,7 +98,7 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
 
 
 def _count(system: SwitchedSystem) -> int | None:
-    """Return how many constant parameters there are; None if their corners are enclosures."""
+    """Return the number of constant parameters; None if their corners are enclosures."""
     count = len(system.switching.fixed_ends[0]).bit_length() - 1
     odd = find_odd_shares(system.switching, (Fraction(0),) * count)
     return count if odd is None else None

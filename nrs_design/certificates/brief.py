@@ -1,4 +1,4 @@
-"""What a statement shows, in a few words; the whole claim is in the certificate."""
+"""Short claims of statements; the whole claim is in the certificate."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             scope = _contact(evidence, system) + _unrounded(evidence, system)
             return f"although signals saturate, decays from rest{of}{scope}"
         case _:
-            # The signal that grows; what follows from it stands behind a colon, or a sentence.
+            # The growing signal stands before a colon, or before the second sentence.
             claim = evidence.claim_in_scope(system)
             signal = claim.rpartition(": ")[0] or claim.partition(". ")[0]
             return signal + _growing_contact(evidence, system)
@@ -78,7 +78,7 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _rule(clock: Clock) -> str:
-    """Say what decides which modes may be in force at a step."""
+    """Return the schedule of the modes in words."""
     if clock.is_round:
         return f", in rounds of {clock.length} steps"
     return " after dwell times" if clock.counts_stays else ", deadlines missed as the rule allows"
@@ -91,7 +91,7 @@ def _unrounded(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
-    # Where free motion is among the modes, what holds for all of them covers it.
+    # Free motion among the modes is covered by a statement about all of them.
     if system.flights is not None:
         return ", contact may be lost"
     if system.contact is None:

@@ -16,10 +16,10 @@ from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.system import SwitchedSystem
 
 SCHEMA = "nrs-design/certificate/9"
-# What says nothing about the claim, so that the id does not cover it.
+# Keys that do not change the claim, which the id does not cover.
 UNSIGNED = frozenset({"id", "origin"})
 
-# Of what a statement shows: that some motion grows.
+# Conclusions that some motion grows.
 GROWTH = frozenset({Shows.INSTABILITY, Shows.INSTABILITY_IN_CONTACT})
 
 Gains = Mapping[str, Mapping[str, str]]
@@ -42,7 +42,7 @@ class CommonQuadraticStatus(StrEnum):
 
 
 class AbstractChecked:
-    """Statements about a system that have passed the exact check, and what follows from them."""
+    """Checked statements about a system, with their conclusions."""
 
     __slots__ = ()
     system: SwitchedSystem
@@ -75,8 +75,8 @@ class Certificate(AbstractChecked):
     coordinates: str | None
     # Designed gains (float32, as exact decimals) by controller; empty for given matrices.
     gains: Gains
-    system: SwitchedSystem  # What the statements are about
-    statements: tuple[AbstractEvidence, ...]  # What is shown, each with its numbers; at least one
+    system: SwitchedSystem  # Subject of the statements
+    statements: tuple[AbstractEvidence, ...]  # At least one, each with its numbers
     version: str  # Version of this package
     # At which points of the ranges the system stands; empty for all of them. What grows there
     # refutes the spec, and nothing else there says anything of it.
@@ -161,7 +161,7 @@ def common_quadratic_of(
     for item in statements:
         if item.is_common_quadratic:
             return CommonQuadraticStatus.EXISTS
-        # Where no reset moves the state, such a function would prove stability.
+        # Without resets, such a function would prove stability.
         unstable = item.shows is Shows.INSTABILITY and item.is_of_modes(system)
         unstable = unstable and (not system.switching.resets or item.names_unstable_mode)
         if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:

@@ -1,4 +1,4 @@
-"""Check a certificate by itself: that what it states holds for the modes that it holds.
+"""Check a certificate by itself: its statements for its own modes.
 
 No spec, no solver, no floating-point decision. Every sentence and every field that follows from
 the modes and the evidence is regenerated and must agree to the letter.
@@ -47,7 +47,7 @@ class Verification:
     forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
     def __bool__(self) -> bool:
-        """Whether the certificate is valid and proves; one that refutes is valid, too."""
+        """Whether the certificate is valid and proves stability."""
         certificate = self.certificate
         return self.fault is None and certificate is not None and certificate.verdict == "proved"
 
@@ -85,7 +85,7 @@ def read_document(path: Path) -> dict[str, Any]:
 
 
 def _read_bytes(path: Path) -> bytes:
-    """Read a whole file, but never an endless one."""
+    """Read a file up to the largest size of a certificate."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise CertificateError("is not a regular file", path=path)
     with open_regular(path) as file:
@@ -106,7 +106,7 @@ def prove(document: Mapping[str, Any]) -> Verification:
 
 
 def find_altered(document: Mapping[str, Any]) -> Verification | None:
-    """Reject a document that is not as it was written, or of another schema."""
+    """Reject a document that was altered, or has another schema."""
     if document.get("id") != content_id(document):
         return Verification(None, "its content does not match its id: it was altered")
     if document.get("schema") != SCHEMA:
@@ -138,7 +138,7 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
 
 
 def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Certificate:
-    """Read what a document states of a system; whether it holds is not asked."""
+    """Read the certificate of a document, without a check."""
     coordinates = document["coordinates"]
     return Certificate(
         spec_name=read_text(document["spec"]["name"]),

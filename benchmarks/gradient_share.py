@@ -11,8 +11,8 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
+from nrs_design.search.gradient import Coordinates, Gradient, Order, find_by_gradient
 from nrs_design.search.method import Method
-from nrs_design.thesis.gradient import Coordinates, Gradient, Order, find_by_gradient
 
 # Numbers of states that are counted together.
 ORDERS = ((2, 4), (5, 8), (9, 12))

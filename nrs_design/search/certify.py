@@ -57,7 +57,7 @@ def certify(
     what it would have found is not known; an `InternalError` if two exact computations disagree.
     """
     limits = limits or Limits()
-    allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
+    allowance = _allowance(limits)
     if method is not Method.AUTO and method not in applicable_methods(system):
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
@@ -102,10 +102,8 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     from nrs_design.search.period import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
-    limits = limits or Limits()
-    allowance = Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
     with floats_in_silence():
-        family = Family.of(system, allowance)
+        family = Family.of(system, _allowance(limits or Limits()))
     search = examine_suspicious_modes if system.clock is None else search_rounds
     evidence, _ = take_candidate(partial(search, family), system, family.allowance)
     if evidence is None:
@@ -113,6 +111,10 @@ def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str
     if not agrees(system, evidence):
         raise InternalError(DISAGREE)
     return refuted_in(system, (evidence,)) or ""
+
+
+def _allowance(limits: Limits) -> Allowance:
+    return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
 
 def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) -> Certification:

@@ -133,9 +133,11 @@ class Rung:
 
     def is_idle(self, known: frozenset[Shows]) -> bool:
         """Tell whether the rung can add nothing to known conclusions."""
-        if Shows.STABILITY in known and self.method in REFUTING:
+        gradient = self.method is Method.GRADIENT
+        if Shows.STABILITY in known and (gradient or self.method in REFUTING):
             return True
-        return self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known
+        without_quadratic = gradient and Shows.NO_COMMON_QUADRATIC in known
+        return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return the number of steps before the rungs below: those of the quick first degrees."""
@@ -212,7 +214,7 @@ def _in(place: str) -> Callable[..., Any]:
 
 
 TOGETHER, MODES = _in("graphs.search_together"), _in("graphs.search_modes")
-OBSTRUCTION = _in("obstruction.search_obstruction")
+OBSTRUCTION, GRADIENT = _in("obstruction.search_obstruction"), _in("gradient.search_by_gradient")
 AT_VALUES = _in("unstable_value.search_switching_at_values")
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
@@ -271,6 +273,7 @@ LADDER: tuple[Rung, ...] = (
         lambda f: f.may_share_a_function() and not f.may_bounce(),
         OBSTRUCTION,
     ),
+    Rung("gradient", Method.GRADIENT, Facts.may_share_a_function, GRADIENT),
     Rung("every mode", None, Facts.always, _in("unstable_mode.examine_every_mode")),
     Rung("constant values", Method.VALUE, Facts.has_values, _in("unstable_value.search_value")),
     Rung(
@@ -353,8 +356,8 @@ def steps(
     """Yield the names of the rungs with their searches, in the order in which they are tried.
 
     What is left of the budget when a step is asked for decides how far degrees rise. `known` tells
-    what has been shown by now: where it is not stable in kept contact, only growth with contact
-    that is lost is searched for.
+    what has been shown by now: where there is no common quadratic function, none is searched for;
+    where it is not stable in kept contact, only growth with contact that is lost.
     """
     facts = Facts.of(system)
     rising = []

@@ -11,6 +11,7 @@ class Method(StrEnum):
     CONEWISE_POLYNOMIAL = "conewise-polynomial"
     CONEWISE_QUADRATIC = "conewise-quadratic"
     LMI = "lmi"
+    GRADIENT = "gradient"
     OBSTRUCTION = "obstruction"
     MEMORY_POLYNOMIAL = "memory-polynomial"
     MEMORY_QUADRATIC = "memory-quadratic"

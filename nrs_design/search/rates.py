@@ -227,13 +227,14 @@ def at_own_rate(
     solution: S,
     family: Family,
     bits: Sequence[int],
+    words: str = "found",
     *,
     errors: bool = False,
 ) -> Iterator[Candidate[E]]:
     """Yield roundings of a solution at rates just below the one that it shows itself."""
     for claim in claims(1.0, program.own_rate(solution), family.system.time):
         for evidence in program.roundings(solution, claim, bits, errors=errors):
-            yield Candidate(evidence)
+            yield Candidate(evidence, words)
 
 
 def bisect_position(

@@ -25,15 +25,15 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
-from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Number, Recomputed, format_number
-from nrs_design.thesis.gradient import (
+from nrs_design.search.gradient import (
     Coordinates,
     Gradient,
     GradientResult,
     Order,
     find_by_gradient,
 )
+from nrs_design.thesis import thesis
+from nrs_design.thesis.comparison import Found, Number, Recomputed, format_number
 
 MOTION = realize(thesis.REALIZED_LOOP)
 

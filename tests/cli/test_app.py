@@ -111,7 +111,7 @@ def test_an_easy_proof_loads_one_search_and_neither_a_solver_nor_a_design(tmp_pa
     kinds = {kind.replace("-", "_") for kind in KINDS}
     loaded = {name.removeprefix("nrs_design.proof.evidence.") for name in modules}
     assert kinds & loaded == {"graph", "growing_sequence"}
-    for needless in ("period", "invariant_ellipsoid", "saturated_ellipsoid"):
+    for needless in ("period", "invariant_ellipsoid", "saturated_ellipsoid", "gradient"):
         assert f"nrs_design.search.{needless}" not in modules
 
 

@@ -11,6 +11,7 @@ from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.drawing import Solution
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
+from nrs_design.search.gradient import search_by_gradient
 from nrs_design.search.graphs import decide_one_state, search_by_lmi, search_polynomial
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
@@ -100,7 +101,8 @@ def test_one_state_is_decided_without_floating_point():
 
 def test_beyond_floating_point():
     beyond = family([[-(10**400), 0], [0, -1]])
-    assert outcome(search_by_lmi, beyond) == (None, OUT_OF_RANGE)
+    for search in (search_by_lmi, search_by_gradient):
+        assert outcome(search, beyond) == (None, OUT_OF_RANGE)
     assert outcome(examine_suspicious_modes, beyond)[0] is None
 
 

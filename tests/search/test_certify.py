@@ -19,12 +19,13 @@ from nrs_design.errors import ClockError, DesignError, InternalError
 from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search import ladder, unstable_mode
+from nrs_design.search import gradient, ladder, unstable_mode
 from nrs_design.search.acceptance import Candidate, first_accepted
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.drawing import Solution
 from nrs_design.search.forms import FormsProgram
+from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
 from nrs_design.search.sdp import Maximum, SemidefiniteProgram
 from tests.proof.graphs import common_quadratic, shape_of
@@ -153,7 +154,8 @@ class TestNearTheThreshold:
     @pytest.mark.parametrize("a", ["5.8285", "10"])
     def test_no_quadratic_function_above(self, a):
         assert outcome(dayawansa_martin(a)) == ("proved", "impossible")
-        assert outcome(dayawansa_martin(a), Method.LMI) == ("inconclusive", "unknown")
+        for method in (Method.LMI, Method.GRADIENT):
+            assert outcome(dayawansa_martin(a), method) == ("inconclusive", "unknown")
 
     @pytest.mark.parametrize("a", ["11.262", "12", "100"])
     def test_refuted_beyond_the_limit_of_stability(self, a):
@@ -306,6 +308,7 @@ class TestMethods:
         ("method", "system", "expected"),
         [
             (Method.LMI, STABLE, ("proved", "exists")),
+            pytest.param(Method.GRADIENT, STABLE, ("proved", "exists"), marks=pytest.mark.slow),
             (Method.OBSTRUCTION, STABLE, ("inconclusive", "unknown")),
             (Method.OBSTRUCTION, NOT_QUADRATIC, ("inconclusive", "impossible")),
             (Method.POLYNOMIAL, NOT_QUADRATIC, ("proved", "unknown")),
@@ -531,11 +534,23 @@ class TestLyingSolvers:
         monkeypatch.setattr(
             unstable_mode, "seems_stable", lambda family: np.ones(len(family.matrices), bool)
         )
+        monkeypatch.setattr(gradient, "iterate_gradient", lambda *_: GradientResult(None, 0))
 
     def test_the_search(self, monkeypatch, name):
         def tell(lie):
             monkeypatch.setattr(FormsProgram, "solve", solving(lie))
 
+        assert not wrong_lies(name, tell)
+
+    def test_the_gradient(self, monkeypatch, name):
+        def tell(lie):
+            monkeypatch.setattr(
+                gradient,
+                "iterate_gradient",
+                lambda matrices, *_: GradientResult(lie(matrices.shape[1]), 1),
+            )
+
+        monkeypatch.setattr(FormsProgram, "solve", lambda *_: None)
         assert not wrong_lies(name, tell)
 
     def test_every_semidefinite_program(self, monkeypatch, name):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.errors import DesignError
+from nrs_design.proof.evidence import Shows
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
@@ -37,9 +38,11 @@ def test_what_does_not_pass_the_whole_check_is_no_evidence():
     assert certify(twins, limits=Limits(max_degree=4)).verdict is Verdict.INCONCLUSIVE
 
 
-def names(system, method=Method.AUTO, *, limits=None, allowance=None):
+def names(system, method=Method.AUTO, *, limits=None, allowance=None, no_quadratic=False):
     """The steps in order, none of which is made."""
-    found = steps(system, method, limits or Limits(), allowance or Allowance(), frozenset)
+    limits, allowance = limits or Limits(), allowance or Allowance()
+    known = frozenset({Shows.NO_COMMON_QUADRATIC} if no_quadratic else ())
+    found = steps(system, method, limits, allowance, lambda: known)
     return [name for name, _ in found]
 
 
@@ -48,6 +51,7 @@ def test_the_order_is_cheapest_first_and_higher_degrees_come_last():
         "suspicious modes",
         "lmi",
         "obstruction",
+        "gradient",
         "every mode",
         "mixture",
         "polynomial of degree 4",
@@ -92,12 +96,18 @@ def test_nothing_remembers_in_continuous_time():
     assert not any("memory" in name for name in names(dayawansa_martin(6)))
 
 
+def test_without_a_common_quadratic_none_is_looked_for_again():
+    left = names(dayawansa_martin(6), limits=Limits(max_degree=4), no_quadratic=True)
+    assert "gradient" not in left
+    assert "polynomial of degree 4" in left
+
+
 @pytest.mark.parametrize(
     ("system", "others"),
     [
-        (family([[-1]], [[-2]]), ["one state", "obstruction"]),
-        (geromel_colaneri(3), ["lmi", "mode quadratic"]),
-        (ando_shih("0.7"), ["lmi", "mode quadratic"]),
+        (family([[-1]], [[-2]]), ["one state", "obstruction", "gradient"]),
+        (geromel_colaneri(3), ["lmi", "mode quadratic", "gradient"]),
+        (ando_shih("0.7"), ["lmi", "mode quadratic", "gradient"]),
         (
             shears(Switching(fixed_ends=(("m0", "m1"),))),
             ["constant values", "constants quadratic", "switching at constant values"],

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nrs_design.search.family import Family
-from nrs_design.thesis.gradient import Order
+from nrs_design.search.gradient import Order
 from nrs_design.thesis.switching import FEW, UPDATES, pairs, run
 
 PAIRS = dict(pairs())

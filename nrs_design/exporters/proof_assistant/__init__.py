@@ -16,7 +16,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 COVERED = (
-    "lmi, conewise-quadratic and mode-quadratic; "
+    "lmi, gradient, conewise-quadratic and mode-quadratic; "
     "conewise-mode-quadratic in discrete time; polynomial and conewise-polynomial in continuous "
     "time"
 )

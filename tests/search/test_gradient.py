@@ -7,9 +7,9 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import own_norms
+from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
-from nrs_design.thesis import thesis
-from nrs_design.thesis.gradient import (
+from nrs_design.search.gradient import (
     PER_ROUND,
     Coordinates,
     Gradient,
@@ -17,9 +17,11 @@ from nrs_design.thesis.gradient import (
     find_by_gradient,
     iterate_gradient,
 )
+from nrs_design.search.method import Method
+from nrs_design.thesis import thesis
 from nrs_design.thesis.switching import impedance_rows
 from nrs_design.work import Allowance, NotAffordableError
-from tests.support import family
+from tests.support import family, holds
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
 WORSE = np.array([PAIR[0], [[-1.0, -6.0], [1 / 6, -1.0]]])
@@ -129,3 +131,8 @@ def test_what_it_finds_in_any_coordinates_is_for_the_modes(coordinates):
     assert (result.Q is None) is (coordinates == Coordinates.GIVEN)
     if result.Q is not None:
         assert all(largest(A, result.Q) < 1 for A in Family.of(system).matrices)
+
+
+def test_its_function_is_checked():
+    system = family(*PAIR.tolist())
+    assert holds(system, certify(system, Method.GRADIENT).evidence)

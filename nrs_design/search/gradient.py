@@ -1,6 +1,7 @@
-"""Gradient iteration of Liberzon and Tempo (2004); thesis 5.21-5.28.
+"""Gradient iteration of Liberzon and Tempo (2004), as a reference (untrusted search).
 
-An update is made iff v > 0 (the print says v > Theta). That the iteration ends is no evidence.
+Thesis 5.21-5.28, with an update iff v > 0 (the print says v > Theta). The end of the iteration is
+no evidence: the exact check decides about its Q as about any other.
 """
 
 from __future__ import annotations
@@ -12,9 +13,14 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
+from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
 from nrs_design.search.balance import mean_norm, own_norms, round_coordinates
 from nrs_design.search.family import Family
+from nrs_design.search.forms import FormsProgram
+from nrs_design.search.graphs import draw_balanced
+from nrs_design.search.rates import at_own_rate, digits
 from nrs_design.work import Allowance
 
 # Work per round and per multiplication in it.
@@ -57,6 +63,19 @@ class GradientResult:
 
     Q: Matrices | None
     updates: int
+
+
+def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a common quadratic function, and claim the rate that it shows itself."""
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    # The rungs below need time as well.
+    result = find_by_gradient(replace(family, allowance=family.allowance.part(0.5)), Gradient())
+    if result.Q is None:
+        return f"not converged after {result.updates} updates"
+    program, words = FormsProgram(draw_balanced(family)), f"found after {result.updates} updates"
+    yield from at_own_rate(program, program.solution_of([result.Q]), family, digits(), words)
+    return None
 
 
 def find_by_gradient(family: Family, settings: Gradient) -> GradientResult:

@@ -10,7 +10,8 @@ from benchmarks.random_families import COUNT, DECIMALS, QUICK_COUNT, SMOKE_COUNT
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.family import Family
+from nrs_design.search.gradient import Coordinates, Gradient, Order, find_by_gradient
 from nrs_design.search.method import Method
 
 # Numbers of states that are counted together.
@@ -23,7 +24,7 @@ def run(size: Size) -> tuple[Finding, ...]:
     """Take the families that the LMI proves, and run the iteration on each."""
     families = draw_families(size.pick(COUNT, QUICK_COUNT, SMOKE_COUNT))
     systems = [to_system(matrices, DECIMALS) for matrices in families]
-    proved = [system for system in systems if _is_proved(system, Method.LMI, Gradient())]
+    proved = [system for system in systems if _is_proved(system)]
     updates = size.pick(MAX_UPDATES, QUICK_MAX_UPDATES, 10)
     default, balanced, printed = (
         Gradient(coordinates=coordinates, max_updates=updates) for coordinates in Coordinates
@@ -46,9 +47,9 @@ def _between(systems: list[SwitchedSystem], low: int, high: int) -> list[Switche
 
 def _settle(what: str, systems: list[SwitchedSystem], gradient: Gradient) -> Finding:
     start = perf_counter()
-    _ = [_is_proved(system, Method.LMI, Gradient()) for system in systems]
+    _ = [_is_proved(system) for system in systems]
     middle = perf_counter()
-    settled = sum(_is_proved(system, Method.GRADIENT, gradient) for system in systems)
+    settled = sum(find_by_gradient(Family.of(s), gradient).Q is not None for s in systems)
     seconds = perf_counter() - middle
     return Finding(
         f"gradient on families with a proof by LMI: {what}",
@@ -60,6 +61,5 @@ def _settle(what: str, systems: list[SwitchedSystem], gradient: Gradient) -> Fin
     )
 
 
-def _is_proved(system: SwitchedSystem, method: Method, gradient: Gradient) -> bool:
-    limits = Limits(optimize_rate=False, gradient=gradient)
-    return certify(system, method, limits).verdict == "proved"
+def _is_proved(system: SwitchedSystem) -> bool:
+    return certify(system, Method.LMI, Limits(optimize_rate=False)).verdict == "proved"

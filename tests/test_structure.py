@@ -40,7 +40,6 @@ STAGES = {"models", "design", "loop", "search"}
 DOORS = {
     "nrs_design.models.contact",
     "nrs_design.search.certification",
-    "nrs_design.search.gradient_settings",
     "nrs_design.search.method",
     "nrs_design.design.measures",
 }

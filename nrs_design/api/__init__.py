@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from nrs_design.api.study import Study as Study
     from nrs_design.api.study import load as load
     from nrs_design.api.worst import WorstFound as WorstFound
-    from nrs_design.search.gradient_settings import Gradient as Gradient
 
 _HOMES = {
     name: module
@@ -34,7 +33,7 @@ _HOMES = {
         "exported": "Exported",
         "identified": "FittedRange Identification identify",
         "lyapunov": "Counterexample LyapunovCheck",
-        "matrices": "Gradient certify check_lyapunov",
+        "matrices": "certify check_lyapunov",
         "optimum": "Optimum",
         "recheck": "Recheck verify",
         "simulation": "ScenarioRun Simulation",

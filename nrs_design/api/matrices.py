@@ -14,7 +14,6 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.search.gradient_settings import Gradient
 
 DEFAULT_NAME = "switched-system"
 
@@ -32,7 +31,6 @@ def certify(
     method: str = "auto",
     budget: float | None = None,
     max_degree: int | None = None,
-    gradient: Gradient | None = None,
 ) -> Decision:
     """Prove or refute that a switched linear system is uniformly exponentially stable.
 
@@ -66,8 +64,6 @@ def certify(
         Work that the search may take, in units of about a second: 60 by default.
     max_degree : int, optional
         Highest degree of a polynomial function.
-    gradient : Gradient, optional
-        Settings of the gradient iteration, for the method ``"gradient"``.
 
     Returns
     -------
@@ -96,9 +92,7 @@ def certify(
         resets=resets,
         parameters=parameters,
     )
-    return Study(loaded).certify(
-        method=method, budget=budget, max_degree=max_degree, gradient=gradient
-    )
+    return Study(loaded).certify(method=method, budget=budget, max_degree=max_degree)
 
 
 def check_lyapunov(

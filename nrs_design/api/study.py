@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,6 @@ from nrs_design.pipeline.runs import (
     run_interaction_of,
 )
 from nrs_design.search.certification import Limits
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.wings import load_wing
@@ -139,13 +138,12 @@ class Study:
         method: str = "auto",
         budget: float | None = None,
         max_degree: int | None = None,
-        gradient: Gradient | None = None,
     ) -> Decision:
         """Design, assemble and decide; see `certify` for the options.
 
         Parameters
         ----------
-        method, budget, max_degree, gradient
+        method, budget, max_degree
             As for `certify`.
 
         Raises
@@ -156,7 +154,7 @@ class Study:
         ClockError
             If the clock stopped the search, long after its budget of work should have.
         """
-        limits = _limits(self.loaded.spec, budget, max_degree, gradient)
+        limits = _limits(self.loaded.spec, budget, max_degree)
         result = run_certification(self.loaded, method=_method(method), limits=limits)
         return Decision(result)
 
@@ -312,9 +310,7 @@ def _method(name: str) -> Method:
     return Method(name)
 
 
-def _limits(
-    spec: Spec, budget: float | None, max_degree: int | None, gradient: Gradient | None
-) -> Limits:
+def _limits(spec: Spec, budget: float | None, max_degree: int | None) -> Limits:
     """Return how far the search goes: as the spec says, where nothing else is said."""
     from nrs_design.spec.certification import HIGHEST_DEGREE
 
@@ -322,5 +318,4 @@ def _limits(
         raise DesignError(f"the budget is {budget}", remedy="give units of work above zero")
     if max_degree is not None and not 2 <= max_degree <= HIGHEST_DEGREE:
         raise DesignError(f"max_degree is {max_degree}", remedy=f"give 2 to {HIGHEST_DEGREE}")
-    limits = search_limits(spec, Overrides(max_degree, budget))
-    return replace(limits, gradient=gradient or Gradient())
+    return search_limits(spec, Overrides(max_degree, budget))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from nrs_design.proof.bounds import lower_float, upper_float
@@ -14,7 +14,7 @@ from nrs_design.proof.system import SwitchedSystem
 def bounds_summary(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence]
 ) -> list[dict[str, Any]]:
-    """Return every bound with what it holds under, for programs; statements have been checked."""
+    """Return every bound with its conditions, for programs; statements have been checked."""
     return [
         {
             "output": bound.output.name,
@@ -28,8 +28,7 @@ def bounds_summary(
             ],
             "rounding_included": item.covers_rounding,
         }
-        for item in statements
-        if (bound := item.bound(system)) is not None
+        for item, bound in _bounds(system, statements)
     ]
 
 
@@ -40,22 +39,28 @@ def bound_on(
 
     The statements have been checked.
     """
-    bounds = (item.bound(system) for item in statements)
-    every = set(system.channels)
-    found = (b for b in bounds if b is not None and b.output.name == output)
-    return next((b for b in found if set(b.channels) == every), None)
+    bounds = (bound for _, bound in _bounds(system, statements) if bound.output.name == output)
+    return next((one for one in bounds if {*one.channels} == {*system.channels}), None)
 
 
 def keeps_command(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> bool:
     """Tell whether a bound shows that the motor's driver does not saturate from rest.
 
-    The statements have been checked; bounds that leave out what is rounded do not count.
+    The statements have been checked; bounds without rounding errors do not count.
     """
     from nrs_design.spec.motion import MOTOR_COMMAND
 
-    bounds = (item.bound(system) for item in statements if item.covers_rounding)
     return any(
         bound.output.limit is not None and bound.level <= bound.output.limit
-        for bound in bounds
-        if bound is not None and bound.output.name.startswith(MOTOR_COMMAND)
+        for item, bound in _bounds(system, statements)
+        if item.covers_rounding and bound.output.name.startswith(MOTOR_COMMAND)
     )
+
+
+def _bounds(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> Iterator[tuple[AbstractEvidence, Bound]]:
+    """Yield the statements of a bound, each with its bound."""
+    for item in statements:
+        if (bound := item.bound(system)) is not None:
+            yield item, bound

@@ -1,4 +1,4 @@
-"""What a statement shows, in a few words; the whole claim is in the certificate."""
+"""Short claims of statements; the whole claim is in the certificate."""
 
 from __future__ import annotations
 
@@ -31,16 +31,14 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             return "no common quadratic function exists"
         case Shows.REGION:
             assert system.saturation is not None
-            start, size = system.saturation.start, evidence.start_size
-            unit = f" {start.unit}".rstrip()
-            of = ""
+            start, size, of = system.saturation.start, evidence.start_size, ""
             if size is not None:
-                of = f" with a {start.name} up to {lower(size, DIGITS)}{unit}"
-                of += start.exception
-            beside = _contact(evidence, system) + _unrounded(evidence, system)
-            return f"although signals saturate, decays from rest{of}{beside}"
+                most = f"{lower(size, DIGITS)} {start.unit}".rstrip()
+                of = f" with a {start.name} up to {most}{start.exception}"
+            scope = _contact(evidence, system) + _unrounded(evidence, system)
+            return f"although signals saturate, decays from rest{of}{scope}"
         case _:
-            # The signal that grows; what follows from it stands behind a colon, or a sentence.
+            # The growing signal stands before a colon, or before the second sentence.
             claim = evidence.claim_in_scope(system)
             signal = claim.rpartition(": ")[0] or claim.partition(". ")[0]
             return signal + _growing_contact(evidence, system)
@@ -80,7 +78,7 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _rule(clock: Clock) -> str:
-    """Say what decides which modes may be in force at a step."""
+    """Return the schedule of the modes in words."""
     if clock.is_round:
         return f", in rounds of {clock.length} steps"
     return " after dwell times" if clock.counts_stays else ", deadlines missed as the rule allows"
@@ -93,7 +91,7 @@ def _unrounded(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
 
 
 def _contact(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
-    # Where free motion is among the modes, what holds for all of them covers it.
+    # Free motion among the modes is covered by a statement about all of them.
     if system.flights is not None:
         return ", contact may be lost"
     if system.contact is None:

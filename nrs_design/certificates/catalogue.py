@@ -30,13 +30,13 @@ class Standing(StrEnum):
 
 # Kind of the assumption that contact is maintained.
 CONTACT_KEPT = "contact-kept"
-# The table of texts that stand for keys, by field and key; it is no kind.
+# Name of the table of texts by field and key; it is no kind.
 _WORDS = "words"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AssumptionKind:
-    """A kind of assumption: one thing that its sentences take for granted."""
+    """Kind of assumption: sentences with one subject."""
 
     id: str
     name: str  # In a few words
@@ -130,7 +130,7 @@ def _name(assumption: Assumption) -> str:
 
 @cache
 def _law_sentences() -> dict[str, str]:
-    """Return the templates that only one law uses; they stand in the file of the law."""
+    """Return templates of single laws, from the files of the laws."""
     from nrs_design.controllers.laws import LAWS
     from nrs_design.spec.environment import ENVIRONMENT_LAWS
 

@@ -16,10 +16,10 @@ from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.system import SwitchedSystem
 
 SCHEMA = "nrs-design/certificate/9"
-# What says nothing about the claim, so that the id does not cover it.
+# Keys that do not change the claim, which the id does not cover.
 UNSIGNED = frozenset({"id", "origin"})
 
-# Of what a statement shows: that some motion grows.
+# Conclusions that some motion grows.
 GROWTH = frozenset({Shows.INSTABILITY, Shows.INSTABILITY_IN_CONTACT})
 
 Gains = Mapping[str, Mapping[str, str]]
@@ -41,8 +41,31 @@ class CommonQuadraticStatus(StrEnum):
     UNKNOWN = "unknown"
 
 
+class AbstractChecked:
+    """Checked statements about a system, with their conclusions."""
+
+    __slots__ = ()
+    system: SwitchedSystem
+    statements: tuple[AbstractEvidence, ...]
+
+    @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict, or None."""
+        return deciding(self.system, self.statements)
+
+    @property
+    def refuted_in(self) -> str | None:
+        """Contact in which it is refuted, where the loss of contact stays open; or None."""
+        return refuted_in(self.system, self.statements)
+
+    @property
+    def granted(self) -> tuple[Assumption, ...]:
+        """Assumptions of the statements."""
+        return granted(self.system, self.statements)
+
+
 @dataclass(frozen=True, slots=True)
-class Certificate:
+class Certificate(AbstractChecked):
     """A claim about one spec with the evidence for it."""
 
     # spec_name, spec_sha256: the spec that it belongs to, and the hash of what that file says.
@@ -52,8 +75,8 @@ class Certificate:
     coordinates: str | None
     # Designed gains (float32, as exact decimals) by controller; empty for given matrices.
     gains: Gains
-    system: SwitchedSystem  # What the statements are about
-    statements: tuple[AbstractEvidence, ...]  # What is shown, each with its numbers; at least one
+    system: SwitchedSystem  # Subject of the statements
+    statements: tuple[AbstractEvidence, ...]  # At least one, each with its numbers
     version: str  # Version of this package
     # At which points of the ranges the system stands; empty for all of them. What grows there
     # refutes the spec, and nothing else there says anything of it.
@@ -66,21 +89,6 @@ class Certificate:
     def verdict(self) -> str:
         """``proved``, ``refuted``, or ``inconclusive`` if it shows neither."""
         return str(verdict_of(self.system, self.statements))
-
-    @property
-    def evidence(self) -> AbstractEvidence | None:
-        """The statement that decides the verdict, or None."""
-        return deciding(self.system, self.statements)
-
-    @property
-    def refuted_in(self) -> str | None:
-        """Of what the statements refute it, if that leaves the loss of contact open; or None."""
-        return refuted_in(self.system, self.statements)
-
-    @property
-    def granted(self) -> tuple[Assumption, ...]:
-        """What the statements take for granted."""
-        return granted(self.system, self.statements)
 
     @property
     def common_quadratic(self) -> CommonQuadraticStatus:
@@ -153,7 +161,7 @@ def common_quadratic_of(
     for item in statements:
         if item.is_common_quadratic:
             return CommonQuadraticStatus.EXISTS
-        # Where no reset moves the state, such a function would prove stability.
+        # Without resets, such a function would prove stability.
         unstable = item.shows is Shows.INSTABILITY and item.is_of_modes(system)
         unstable = unstable and (not system.switching.resets or item.names_unstable_mode)
         if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:

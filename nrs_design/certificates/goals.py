@@ -1,4 +1,4 @@
-"""The goals that a certificate must show: what is wanted, what it shows, whether that is enough."""
+"""Goals that a certificate must show: target, proved value, and whether it suffices."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _FREE = "optimize says which gains come nearest"
 class CertifiedGoal:
     """One goal of a spec that a certificate must show."""
 
-    key: str  # Of the goal in the spec, such as ``decay_rate``
+    key: str  # Key of the goal in the spec, such as ``decay_rate``
     wanted: str  # As the spec writes it; ``largest`` wants no number
     said: str  # What is proved; numbers are rounded to their safe side
-    # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
+    # Whether the proved value suffices; otherwise more may be true.
     met: bool
 
     @property
@@ -45,7 +45,7 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
     The certificate has been checked; None if nothing was shown.
     """
     for goal in _goals(spec, certificate):
-        # Who has goals has loaded what gains are.
+        # Specs with goals have loaded this module before.
         from nrs_design.controllers.gains import steering_goals
 
         others = not goal.met and goal.key in steering_goals(spec)
@@ -53,7 +53,7 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
 
 
 def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
-    # To name the class would load it, and all its parts, for specs that have no goals.
+    # An `isinstance` would load the class with all its parts, for specs without goals.
     if spec.kind != "interaction-design" or (goals := spec.goals) is None:
         return
     if (torque := goals.peak_torque) is not None:
@@ -107,7 +107,7 @@ def decay_rate(certificate: Certificate | None) -> Fraction | None:
 
 
 def rate_per_second(rate: N | None, system: SwitchedSystem) -> N | None:
-    """Return a rate of a system in 1/s; None if there is none, or no period is known.
+    """Return a rate of a system in 1/s; None without a rate or a period.
 
     Of a contraction rho per step, ``(1 - rho)`` over the period is not above it.
     """

@@ -1,4 +1,4 @@
-"""Check a certificate by itself: that what it states holds for the modes that it holds.
+"""Check a certificate by itself: its statements for its own modes.
 
 No spec, no solver, no floating-point decision. Every sentence and every field that follows from
 the modes and the evidence is regenerated and must agree to the letter.
@@ -32,14 +32,7 @@ from nrs_design.proof.text import quoted
 MAX_VERDICTS = 2
 MAX_BYTES = 32 * 2**20
 # What a hostile document can raise before the exact check: all of it means rejection.
-_MALFORMED = (
-    LookupError,
-    TypeError,
-    ValueError,
-    ArithmeticError,
-    AttributeError,
-    RecursionError,
-)
+_MALFORMED = (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, RecursionError)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +47,7 @@ class Verification:
     forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
     def __bool__(self) -> bool:
-        """Whether the certificate is valid and proves; one that refutes is valid, too."""
+        """Whether the certificate is valid and proves stability."""
         certificate = self.certificate
         return self.fault is None and certificate is not None and certificate.verdict == "proved"
 
@@ -92,7 +85,7 @@ def read_document(path: Path) -> dict[str, Any]:
 
 
 def _read_bytes(path: Path) -> bytes:
-    """Read a whole file, but never an endless one."""
+    """Read a file up to the largest size of a certificate."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise CertificateError("is not a regular file", path=path)
     with open_regular(path) as file:
@@ -113,7 +106,7 @@ def prove(document: Mapping[str, Any]) -> Verification:
 
 
 def find_altered(document: Mapping[str, Any]) -> Verification | None:
-    """Reject a document that is not as it was written, or of another schema."""
+    """Reject a document that was altered, or has another schema."""
     if document.get("id") != content_id(document):
         return Verification(None, "its content does not match its id: it was altered")
     if document.get("schema") != SCHEMA:
@@ -145,7 +138,7 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
 
 
 def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Certificate:
-    """Read what a document states of a system; whether it holds is not asked."""
+    """Read the certificate of a document, without a check."""
     coordinates = document["coordinates"]
     return Certificate(
         spec_name=read_text(document["spec"]["name"]),
@@ -176,7 +169,7 @@ def read_ages(document: Mapping[str, Any]) -> tuple[int, int] | None:
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:
-    """Return a judgement: a rejection where something is malformed, and not without flint.
+    """Return a judgement as `judged` does, and not without flint.
 
     An `InternalError` if flint disagrees with what has been accepted.
     """
@@ -184,9 +177,8 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     certificate = verification.certificate
     if certificate is None or verification.fault is not None:
         return verification
-    system, statements = certificate.system, certificate.statements
-    pairs = zip(statements, verification.forms, strict=True)
-    if not all(agrees(system, item, forms) for item, forms in pairs):
+    pairs = zip(certificate.statements, verification.forms, strict=True)
+    if not all(agrees(certificate.system, item, forms) for item, forms in pairs):
         raise InternalError(DISAGREE)
     return Verification(certificate, None)
 

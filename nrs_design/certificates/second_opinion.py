@@ -35,9 +35,7 @@ Exponent = tuple[RationalMatrix, Fraction]
 
 
 def agrees(
-    system: SwitchedSystem,
-    evidence: AbstractEvidence,
-    forms: Sequence[IntegerMatrix] | None = None,
+    system: SwitchedSystem, evidence: AbstractEvidence, forms: Sequence[IntegerMatrix] | None = None
 ) -> bool:
     """Tell whether the second opinion, too, is that evidence holds which the check has accepted.
 
@@ -74,29 +72,30 @@ def _exponents(system: SwitchedSystem, evidence: AbstractEvidence) -> set[Expone
     enclosed = _ENCLOSED.get(evidence.kind)
     if enclosed is None or system.time is Time.DISCRETE:
         return set()
-    return set(enclosed(system, evidence))
+    return set(enclosed(system, evidence, {mode.name: mode.A for mode in system.modes}))
 
 
-def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Exponent]:
-    if evidence.doublings is None or evidence.shares:
-        return iter(())
-    modes = {mode.name: mode.A for mode in system.modes}
-    return ((modes[name], time) for name, time in evidence.steps)
+def _steps(
+    system: SwitchedSystem, evidence: GrowingSequence, modes: Mapping[str, RationalMatrix]
+) -> Iterator[Exponent]:
+    if evidence.doublings is not None and not evidence.shares:
+        yield from ((modes[name], time) for name, time in evidence.steps)
 
 
-def _stays(system: SwitchedSystem, evidence: FormsOnGraph) -> Iterator[Exponent]:
+def _stays(
+    system: SwitchedSystem, evidence: FormsOnGraph, modes: Mapping[str, RationalMatrix]
+) -> Iterator[Exponent]:
     if evidence.stays is None:
         return
     from nrs_design.proof.stays import shifted
 
-    modes = {mode.name: mode.A for mode in system.modes}
     for name, stay in system.stays().items():
         for time in (stay.shortest, stay.longest if name in evidence.stays.leaving else None):
             if time:
                 yield shifted(modes[name], evidence.rate), time
 
 
-_ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
+_ENCLOSED: Mapping[str, Callable[..., Iterator[Exponent]]] = {
     "growing-sequence": _steps,
     "graph": _stays,
 }

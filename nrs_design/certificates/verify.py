@@ -35,11 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
 
-def verify(
-    path: Path,
-    spec: LoadedSpec | None = None,
-    plant: Plant | None = None,
-) -> Verification:
+def verify(path: Path, spec: LoadedSpec | None = None, plant: Plant | None = None) -> Verification:
     """Re-check a certificate file, and whether it belongs to a spec, as read from its own file.
 
     Without a spec the proof is checked for the modes in the certificate, whosever they are. A file
@@ -49,9 +45,7 @@ def verify(
 
 
 def verify_document(
-    document: Mapping[str, Any],
-    spec: LoadedSpec | None = None,
-    plant: Plant | None = None,
+    document: Mapping[str, Any], spec: LoadedSpec | None = None, plant: Plant | None = None
 ) -> Verification:
     """Re-check a parsed certificate; spec and plant as for `verify`."""
     if spec is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,15 +10,14 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import print_goal, print_granted
-from nrs_design.cli.options import Budget, GradientSettings, MaxDegree, Memory, SpecFile
-from nrs_design.cli.printing import note, progress, say, wants_details, wants_json, wants_text
+from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
+from nrs_design.cli.printing import note, progress, say, wants_details, wants_text
 from nrs_design.facts.certification import (
     blocked_facts,
     certification_facts,
     margins_facts,
     radius_facts,
 )
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
@@ -55,7 +53,6 @@ def certify_switching(
     memory: Memory = None,
     margin: LargestBox = False,
     shortest_dwell: ShortestDwell = False,
-    settings: GradientSettings = None,
 ) -> Answer:
     """Prove or refute exponential stability under the declared switching.
 
@@ -73,12 +70,7 @@ def certify_switching(
     if out is not None:
         check_certificate(spec, out)
         check_place(out, CERTIFICATE)
-    history: list[tuple[int, float]] = []
-    gradient = Gradient.of_texts(settings or ())
-    if method is Method.GRADIENT and wants_json():
-        gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
-    limits = replace(limits, gradient=gradient)
     with progress(f"certifying {loaded.spec.name}") as step:
         result = run_certification(loaded, method=method, limits=limits, progress=step)
     # Write and print the proof before looking for margins, which takes minutes.
@@ -108,7 +100,6 @@ def certify_switching(
             certification_facts(result, written)
             | radius_facts(growth)
             | margins_facts(margins)
-            | ({"gradient_history": history} if history else {})
             | {"relief": list(relief), "next_steps": list(steps)}
             | ({} if blocked is None else blocked_facts(blocked, loaded.path))
         )

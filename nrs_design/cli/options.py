@@ -88,16 +88,6 @@ Budget = Annotated[
 Memory = Annotated[
     float | None, typer.Option(min=0.0, help="Memory for a step of the search in GB; default 2.")
 ]
-GradientSettings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="A setting of the gradient iteration: relaxation, radius, start, order, seed, "
-        "max_updates, coordinates.",
-    ),
-]
-
 Date = Annotated[
     datetime | None,
     typer.Option(

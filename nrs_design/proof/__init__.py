@@ -1,1 +1,1 @@
-"""What decides, and nothing else: the trusted ground floor."""
+"""Trusted ground floor: the exact decisions, and nothing else."""

@@ -10,7 +10,7 @@ from typing import Self
 class Assumption:
     """One assumption of a statement; `nrs_design.certificates.catalogue` renders its sentence."""
 
-    id: str  # Of its sentence, such as ``tissue.linear``
+    id: str  # Id of its sentence, such as ``tissue.linear``
     # Values of the sentence by field: names, numbers with units, keys of words.
     fields: tuple[tuple[str, tuple[str, ...]], ...] = ()
 

@@ -28,7 +28,7 @@ def between(
     them in the free modes; roundings are kept on demand.
     """
     saturation = system.saturation
-    assert saturation is not None  # who asks has looked
+    assert saturation is not None  # only saturating systems are embedded
     n, signals = system.order, saturation.signals
     items = system.roundings if rounding else ()
     modes: list[Mode] = []

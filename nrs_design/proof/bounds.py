@@ -12,7 +12,7 @@ from math import inf, isfinite, nextafter
 
 from nrs_design.proof.text import exact_text
 
-# Decimals that are longer, or have no end, are rounded to so many digits.
+# Digits of decimals that are longer, or have no end.
 LONGEST = 14
 DIGITS = 6
 

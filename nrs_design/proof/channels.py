@@ -1,4 +1,4 @@
-"""What acts on the state (disturbances, rounding), and the outputs read of it."""
+"""Inputs of the state (disturbances, rounding errors), and outputs."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from nrs_design.proof.matrix import RationalMatrix
 class Channel:
     """A disturbance d that acts on the state: ``x' = A x + B d``, or ``x+ = A x + B d``."""
 
-    # What it is, such as ``velocity command`` in ``rad/s``.
+    # Quantity, such as ``velocity command`` in ``rad/s``.
     name: str
     unit: str
-    bound: Fraction  # Its size is at most this, at every time; in discrete time, at every step
+    bound: Fraction  # Largest size at every time; in discrete time, at every step
     # Shape (n, 1). The B of every mode, and after them those of the free modes.
     columns: tuple[RationalMatrix, ...]
 
@@ -24,19 +24,19 @@ class Channel:
 class Output:
     """A quantity: one of some rows times the state, within a range any mixture of them."""
 
-    # What it is, such as ``force`` in ``N*m``.
+    # Quantity, such as ``force`` in ``N*m``.
     name: str
     unit: str
     # Shape (1, n). At the corners of its ranges. In free motion the deflection counts as zero.
     rows: tuple[RationalMatrix, ...]
-    limit: Fraction | None = None  # What its size is meant to keep; for words only
+    limit: Fraction | None = None  # Limit of its size; for words only
 
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
     """An error r of an operation of the law: ``x+ = A x + B d + C r``, ``|r| <= |q (x, d)|``."""
 
-    name: str  # What is rounded, such as ``Kp e``
+    name: str  # Rounded operation, such as ``Kp e``
     # Shape (n, 1). The C of every mode, and after them those of the free modes.
     columns: tuple[RationalMatrix, ...]
     # Shape (1, n + number of channels). The q of every mode, and after them those of the free

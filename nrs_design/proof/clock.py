@@ -1,4 +1,4 @@
-"""TRUSTED: which modes may be in force at which steps, and which signals keep to that."""
+"""TRUSTED: schedules of modes, and the signals that follow them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TypeAlias
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 
-# For each state, where something leads; None where it may not be.
+# For each state the next one; None where there is none.
 Leads: TypeAlias = tuple[int | None, ...]
 
 
@@ -36,12 +36,12 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
 
 
 def _then(one: Leads, other: Leads) -> Leads:
-    """Return where two maps lead, one after the other."""
+    """Return the composition of two maps, the first one first."""
     return tuple(None if state is None else other[state] for state in one)
 
 
 def _repeated(leads: Leads, count: int) -> Leads:
-    """Return where a map leads that is made so many times."""
+    """Return the power of a map."""
     result: Leads = tuple(range(len(leads)))
     for bit in bin(count)[2:]:
         result = _then(result, result)

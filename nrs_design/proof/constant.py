@@ -135,7 +135,7 @@ def value_at(parameter: FixedParameter, share: Fraction) -> Fraction:
 
 
 def value_text(system: SwitchedSystem, shares: Sequence[Fraction]) -> str:
-    """Say which value of the constant parameters it is, such as ``At k = 12.5``."""
+    """Return the value of the constant parameters in words, such as ``At k = 12.5``."""
     parameters = system.switching.fixed_parameters
     if not parameters:
         ways = " and ".join(map(str, shares))

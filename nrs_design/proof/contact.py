@@ -49,7 +49,7 @@ class Flights:
     pulls: tuple[RationalMatrix, ...] = ()  # Shape (1, n). As of `Contact`.
 
     def among(self, names: Iterable[str]) -> Flights:
-        """Return the same for some of the modes."""
+        """Return the restriction to some of the modes."""
         left = frozenset(names)
         touching, flying = (
             tuple(name for name in part if name in left) for part in (self.touching, self.flying)

@@ -1,8 +1,8 @@
-"""What a search yields, and where it is accepted: by the exact check alone."""
+"""Candidates of a search, and their acceptance by the exact check."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Generic, TypeVar
@@ -17,8 +17,8 @@ from nrs_design.search.certification import Attempt
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.work import Allowance, NotAffordableError
 
-# Work of a check per candidate and per form: for itself, more where what happens during a stay is
-# enclosed anew for it, and per product of entries and square of their bits.
+# Work of a check per candidate, per form, per form for which stays are enclosed anew, per product
+# of entries, and per product and square of bits.
 PER_CANDIDATE, PER_FORM, PER_ENCLOSED_FORM = 1e-3, 1e-4, 5e-4
 PER_PRODUCT, PER_SQUARED_BITS = 1.5e-7, 2e-13
 # The end of a search that had a solution, but no rate to claim for it.
@@ -31,14 +31,13 @@ E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 @dataclass(frozen=True, slots=True)
 class Candidate(Generic[E]):
-    """Evidence as a search proposes it, and in words how the search ends if it is accepted."""
+    """Proposed evidence, and the outcome of the search in words if the check accepts it."""
 
     evidence: E
     words: str = "found"
 
 
-# Best candidates first. At the end the words on why there is none, or None if there could have been
-# some: then whoever takes them knows why none was taken.
+# Best candidates first. The return value says why there is none; None leaves it to the check.
 Candidates = Generator[Candidate[E], None, str | None]
 Search = Callable[[Family], Candidates[AbstractEvidence]]
 
@@ -46,7 +45,7 @@ Search = Callable[[Family], Candidates[AbstractEvidence]]
 def take_candidate(
     search: Callable[[], Candidates[E]], system: SwitchedSystem, allowance: Allowance
 ) -> tuple[E | None, str]:
-    """Make one search; where it is not affordable, or floating point fails, nothing is found."""
+    """Make one search; without a result if floating point fails or the budget does not suffice."""
     try:
         with floats_in_silence():
             return first_accepted(search(), system, allowance)
@@ -59,11 +58,9 @@ def take_candidate(
 
 
 def first_accepted(
-    candidates: Candidates[E],
-    system: SwitchedSystem,
-    allowance: Allowance | None = None,
+    candidates: Candidates[E], system: SwitchedSystem, allowance: Allowance | None = None
 ) -> tuple[E | None, str]:
-    """Return the first candidate that the exact check accepts, and in words how the search ended.
+    """Return the first candidate that the exact check accepts, and the outcome in words.
 
     Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
     than needed are asked for. Checks are charged to the allowance; none is left out for it.
@@ -78,7 +75,7 @@ def first_accepted(
             return None, end.value or refused
         made: list[IntegerMatrix] = []
         fault = candidate.evidence.find_fault(system, made)
-        # Evidence that encloses what happens during a stay says in how many pieces.
+        # Evidence with enclosed stays has a number of pieces.
         encloses = getattr(getattr(candidate.evidence, "stays", None), "pieces", 1) > 1
         each = PER_ENCLOSED_FORM if encloses else PER_FORM
         products = (
@@ -94,16 +91,15 @@ def attempted(
     search: Callable[[], Candidates[AbstractEvidence]],
     system: SwitchedSystem,
     allowance: Allowance,
-) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+) -> tuple[AbstractEvidence | None, Attempt]:
     """Take the first candidate that holds, and say how it went."""
     start, before = perf_counter(), allowance.charged
     evidence, outcome = take_candidate(search, system, allowance)
-    attempt = Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
-    return () if evidence is None else (evidence,), (attempt,)
+    return evidence, Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
 
 
-def check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:
-    """Check what was put together from evidence for fewer modes or states."""
+def check_again(statements: Iterable[AbstractEvidence], system: SwitchedSystem) -> None:
+    """Check evidence that was put together from evidence for fewer modes or states."""
     for statement in statements:
         if fault := statement.find_fault(system):
             raise InternalError(f"the search returned evidence that does not hold: {fault}")

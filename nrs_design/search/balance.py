@@ -55,14 +55,6 @@ def time_unit(matrices: NDArray[np.float64], time: Time) -> int:
     return ENTRY_LOG2 - int(np.frexp(np.abs(matrices).max())[1])
 
 
-def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
-    """Return T such that in coordinates ``x = T z`` the mean of the modes' own norms is round.
-
-    Each mode is stable, and has the norm ``x' P x`` of its Lyapunov equation, scaled to trace one.
-    """
-    return round_coordinates(mean_norm(matrices, time))
-
-
 def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return an upper triangular T such that ``x' P x`` is ``|z|^2`` for ``x = T z``."""
     return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
@@ -77,7 +69,7 @@ def separating(P: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def mean_norm(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
-    """Return the sum of the matrices of the modes' own norms, each of trace two."""
+    """Return the sum of the matrices of the modes' own norms ``x' P x``, each of trace two."""
     P = own_norms(matrices, time)
     return np.asarray((2 * P / np.trace(P, axis1=1, axis2=2)[:, None, None]).sum(axis=0))
 

@@ -7,10 +7,10 @@ any norms of the nodes. So beginnings that grow by less than the best word known
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,22 +21,22 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates, scale_states
-from nrs_design.search.family import Family, distinct_modes
+from nrs_design.search.family import Family, distinct_modes, to_floats
 from nrs_design.search.graph import jumps_of, spectral_radii, stay_bounds
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Steps of a word, products of a length, and all of them.
+# Largest numbers of steps of a word, of products of one length, and of all products.
 MAX_LENGTH, MAX_PRODUCTS, MOST_PRODUCTS = 64, 20_000, 150_000
 # Entries of the products of a length.
 MAX_ENTRIES = 2_000_000
-# A word is better if it grows by this share more.
+# Least relative gain of a better word.
 BETTER = 1e-6
 # Work for the norm and the eigenvalues of a product, and per multiplication in them.
 PER_MATRIX, PER_PRODUCT = 1e-5, 6e-8
-# Norms of the nodes: what a mean word keeps is round, and so often it is followed.
+# Norms of the nodes: part of a mean word that is kept, and number of steps along it.
 KEPT, SWEEPS = 0.9, 40
 FLAT = 1e-9
 # Larger graphs are not searched.
@@ -56,7 +56,7 @@ def best_words(
     do not suffice end the search. Norms are taken in coordinates T of every node, shape
     (nodes, n, n): by default those in which what a mean word keeps is round.
     """
-    T = _round(graph) if T is None else T
+    T = round_nodes(graph) if T is None else T
     inner = np.linalg.inv(T)[graph.targets] @ graph.maps @ T[graph.sources]
     if not np.isfinite(inner).all():
         return
@@ -94,21 +94,24 @@ def best_words(
         products, bounds = inner[edges] @ products[old], bounds[old]
 
 
-def _round(graph: StepGraph) -> Array:
-    """Return coordinates of every node in which what a mean word keeps of the state is round."""
-    return np.array([round_coordinates(P) for P in round_forms(graph)])
+def round_nodes(graph: StepGraph, rounded: Callable[[Array], Array] = round_coordinates) -> Array:
+    """Return coordinates of every node in which the form of `mean_forms` is round."""
+    forms = mean_forms(graph.maps, graph.sources, graph.targets, graph.count)
+    return np.array([rounded(P) for P in forms])
 
 
-def round_forms(graph: StepGraph) -> Array:
-    """Return for every node the form of what a mean word keeps of the state; (count, n, n)."""
-    n = graph.maps.shape[1]
-    leaving = np.bincount(graph.sources, minlength=graph.count).clip(1)
-    unit = np.broadcast_to(np.eye(n), (graph.count, n, n))
+def mean_forms(maps: Array, sources: Indices, targets: Indices, count: int) -> Array:
+    """Return for every node the form of the state that a mean walk keeps, shape (count, n, n).
+
+    A walk goes along edges with these sources and targets, and maps of the state, shape (.., n, n).
+    """
+    n = maps.shape[1]
+    leaving = np.bincount(sources, minlength=count).clip(1)
+    unit = np.broadcast_to(np.eye(n), (count, n, n))
 
     def mean(forms: Array) -> Array:
         found = np.zeros_like(forms)
-        after = np.swapaxes(graph.maps, 1, 2) @ forms[graph.targets] @ graph.maps
-        np.add.at(found, graph.sources, after)
+        np.add.at(found, sources, np.swapaxes(maps, 1, 2) @ forms[targets] @ maps)
         return np.asarray(found / leaving[:, None, None])
 
     grown, logs = np.array(unit), list[float]()
@@ -119,6 +122,7 @@ def round_forms(graph: StepGraph) -> Array:
             break
         grown = grown / size
         logs.append(np.log(size))
+    # In the mean, as modes that follow each other may grow and decay in turn.
     kept = min(1.0, KEPT / float(np.exp(np.mean(logs)))) if logs else 1.0
     forms = np.array(unit)
     for _ in range(SWEEPS):
@@ -129,20 +133,20 @@ def round_forms(graph: StepGraph) -> Array:
 
 @dataclass(frozen=True)
 class StepGraph:
-    """A node is a mode with the steps made in it; an edge is one more step, in it or another one.
+    """Graph of steps: a node is a mode with a number of steps in it, an edge is one more step.
 
     Edges are in the order of their sources.
     """
 
-    names: tuple[str, ...]  # Of the modes
-    # Of each edge: nodes, the mode of its step, which reset leads there (-1: the mode goes on), and
-    # what becomes of the state.
+    names: tuple[str, ...]  # Names of the modes
+    # Of each edge: its nodes, the mode of its step, the reset before it (-1: the mode goes on), and
+    # the map of the state.
     sources: Indices
     targets: Indices
     modes: Indices
     ways: Indices
     maps: Array  # Shape (edges, n, n)
-    count: int  # Of the nodes
+    count: int  # Number of nodes
     has_choice: bool  # Some switch has more than one reset
 
     @classmethod
@@ -200,12 +204,8 @@ class StepGraph:
         cls, clock: Clock, names: Sequence[str], matrices: Array, kinds: Sequence[int]
     ) -> StepGraph:
         """Return the graph of an automaton: a node is one of its states."""
-        rows = [
-            (state, target, k)
-            for state, kind, target in clock.turns()
-            for k, own in enumerate(kinds)
-            if own == kind
-        ]
+        turns, own = clock.turns(), enumerate(kinds)
+        rows = [(a, b, k) for (a, kind, b), (k, one) in product(turns, own) if one == kind]
         sources, targets, modes = np.array(rows, dtype=np.int64).T
         # Every step is a stay of its own.
         ways = np.zeros_like(modes)
@@ -221,7 +221,8 @@ class StepGraph:
         # A signal begins with its first mode.
         first = min(jumps, key=lambda k: int(self.modes[word[k]]))
         word = word[first:] + word[:first]
-        if self.count == 1:
+        if not self.has_choice and (self.ways >= 0).all():
+            # Every step is a stay of its own.
             runs = [(mode, len([*run])) for mode, run in groupby(self.modes[word].tolist())]
             return tuple((self.names[mode], Fraction(count)) for mode, count in runs), ()
         starts = [k for k, edge in enumerate(word) if self.ways[edge] >= 0]
@@ -244,3 +245,9 @@ def turns_graph(family: Family, clock: Clock) -> StepGraph:
     texts, matrices, kinds = zip(*modes, strict=True)
     scaled = scale_states(np.array(matrices), family.exponents)
     return StepGraph.of_clock(clock, texts, scaled, kinds)
+
+
+def matrices_of_kinds(family: Family, clock: Clock) -> list[Array]:
+    """Return the scaled modes of each kind, shape (m, n, n)."""
+    parts = (on_turn(family.system, clock, kind).modes for kind in clock.kinds)
+    return [scale_states(to_floats([mode.A for mode in own]), family.exponents) for own in parts]

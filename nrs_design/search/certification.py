@@ -1,21 +1,13 @@
-"""What a search is asked for and what it found: nouns, which import no numerical library."""
+"""Limits and results of a search: nouns that import no numerical library."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.certificates.certificate import (
-    CommonQuadraticStatus,
-    Verdict,
-    deciding,
-    granted,
-    refuted_in,
-)
-from nrs_design.proof.assumption import Assumption
+from nrs_design.certificates.certificate import AbstractChecked, CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import GIGABYTE
 
 
@@ -29,15 +21,14 @@ class Limits:
     budget: float = 60.0
     memory: float = 2 * GIGABYTE  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
-    more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
-    gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
-    # What a goal asks for, in 1/s; a search goes on until it is proved, or cannot be.
+    more: bool = True  # Search for bounds and regions after a proof of stability
+    # Goal in 1/s: a search goes on until this rate is proved, or out of reach.
     decay_rate: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One rung: what was tried, how it ended, its time in s, and its work in units.
+    """One rung: its name, outcome, time in s, and work in units.
 
     The time differs from run to run, and decides nothing.
     """
@@ -49,13 +40,13 @@ class Attempt:
 
 
 @dataclass(frozen=True, slots=True)
-class Certification:
+class Certification(AbstractChecked):
     """The verdict on one system, with everything that was shown on the way."""
 
-    system: SwitchedSystem  # What the verdict is about
+    system: SwitchedSystem  # Subject of the verdict
     verdict: Verdict  # Proved, refuted or inconclusive
     common_quadratic: CommonQuadraticStatus  # Whether a common quadratic function exists
-    method: str  # The rung that settled it, or what was asked for
+    method: str  # The deciding rung, or the requested method
     # The deciding evidence first, if any. Each has passed the exact check.
     statements: tuple[AbstractEvidence, ...]
     attempts: tuple[Attempt, ...]  # Every rung in order
@@ -64,21 +55,6 @@ class Certification:
     rate_limit: float | None = None
 
     @property
-    def evidence(self) -> AbstractEvidence | None:
-        """The statement that decides the verdict, or None."""
-        return deciding(self.system, self.statements)
-
-    @property
-    def refuted_in(self) -> str | None:
-        """Of what it is refuted, if that leaves the loss of contact open; None elsewhere."""
-        return refuted_in(self.system, self.statements)
-
-    @property
     def is_open(self) -> bool:
-        """Whether it is neither proved nor refuted, nor refuted in some contact."""
+        """Whether the system is neither proved nor refuted, in any contact."""
         return self.verdict is Verdict.INCONCLUSIVE and self.refuted_in is None
-
-    @property
-    def granted(self) -> tuple[Assumption, ...]:
-        """What the statements take for granted."""
-        return granted(self.system, self.statements)

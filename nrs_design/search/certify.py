@@ -5,12 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from nrs_design.certificates.certificate import (
-    Verdict,
-    common_quadratic_of,
-    refuted_in,
-    verdict_of,
-)
+from nrs_design.certificates.certificate import Verdict, common_quadratic_of, refuted_in, verdict_of
 from nrs_design.certificates.goals import rate_per_second
 from nrs_design.certificates.second_opinion import agrees
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -20,14 +15,13 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import attempted, check_again, take_candidate
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence, rate_limit
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
-from nrs_design.search.statements import bounds, regions
-from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
+from nrs_design.search.statements import asides
+from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.work import Allowance, Fuse
 
-# Share of what is left, for a faster decay than the first proof shows.
+# Share of the rest of the budget, for a faster decay than that of the first proof.
 CLIMBING_ON = 0.5
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
@@ -38,7 +32,7 @@ WIDE = (
 
 @dataclass(frozen=True)
 class _Task:
-    """What is asked for, and what may be spent on it."""
+    """Request for a search, with its budget."""
 
     method: Method
     limits: Limits
@@ -59,9 +53,8 @@ def certify(
     statement has passed the exact check, and flint's second opinion as far as that goes
     (`nrs_design.certificates.second_opinion`).
 
-    A `DesignError` if the method or settings of the gradient iteration do not apply; a `ClockError`
-    if the clock stopped the search: what it would have found is not known; an `InternalError` if
-    two exact computations disagree.
+    A `DesignError` if the method does not apply; a `ClockError` if the clock stopped the search:
+    what it would have found is not known; an `InternalError` if two exact computations disagree.
     """
     limits = limits or Limits()
     allowance = _allowance(limits)
@@ -70,11 +63,10 @@ def certify(
             f"the method {method} does not apply to this kind of switching and time",
             remedy="use --method auto",
         )
-    _check_gradient(system, method, limits.gradient)
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
-    task = _Task(method, _limits_for(merged, system, limits), allowance, progress)
-    # Lost contact and what the arithmetic rounds are matters of the whole state.
+    task = _Task(method, limits, allowance, progress)
+    # Loss of contact and rounding errors concern the whole state.
     simple = simple and system.contact is None and system.flights is None
     simple = simple and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
@@ -88,15 +80,15 @@ def certify(
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
-        for state in (bounds, regions):
-            found, attempts = state(system, allowance, progress)
-            statements += found
-            result = replace(result, attempts=(*result.attempts, *attempts))
+        for name, search, own in asides(system, allowance):
+            progress(name)
+            found, attempt = attempted(name, search, system, own)
+            statements += () if found is None else (found,)
+            result = replace(result, attempts=(*result.attempts, attempt))
     if merged is not system or len(blocks) > 1:
         check_again(statements, system)
-    for statement in statements:
-        if not agrees(system, statement):
-            raise InternalError(DISAGREE)
+    if not all(agrees(system, statement) for statement in statements):
+        raise InternalError(DISAGREE)
     with floats_in_silence():
         limit = rate_limit(system)
     return replace(result, system=system, statements=statements, rate_limit=limit)
@@ -131,37 +123,15 @@ def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) 
 
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
-    result = _climb(merged, replace(task, limits=_limits_for(merged, full, task.limits)))
+    result = _climb(merged, task)
     return replace(result, system=full, statements=_spread(result.statements, merged, full))
-
-
-def _check_gradient(system: SwitchedSystem, method: Method, gradient: Gradient) -> None:
-    """Refuse settings of the gradient iteration that would not be kept."""
-    if gradient != Gradient() and method not in {Method.AUTO, Method.GRADIENT}:
-        raise DesignError(
-            f"the method {method} has no use for settings of the gradient iteration",
-            remedy="use --method gradient, or leave them out",
-        )
-    names = [mode.name for mode in system.modes]
-    if gradient.start is not None and gradient.start not in names:
-        raise DesignError(
-            f"the gradient iteration cannot start with mode {gradient.start!r}: there is none",
-            remedy=f"one of {', '.join(names)}",
-        )
-
-
-def _limits_for(merged: SwitchedSystem, system: SwitchedSystem, limits: Limits) -> Limits:
-    """Let the gradient iteration start with the mode that stands for the wanted one."""
-    start = stand_in(limits.gradient.start, system, merged)
-    return replace(limits, gradient=replace(limits.gradient, start=start))
 
 
 def _climb(system: SwitchedSystem, task: _Task) -> Certification:
     """Try one rung after the other until one decides, or the budget is used up."""
     method, limits, allowance = task.method, task.limits, task.allowance
-    rates, gradient = limits.optimize_rate, limits.gradient
     with floats_in_silence():
-        family = Family.of(system, allowance, optimize_rate=rates, gradient=gradient)
+        family = Family.of(system, allowance, optimize_rate=limits.optimize_rate)
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
     best: tuple[str, AbstractEvidence] | None = None
@@ -176,21 +146,20 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
             attempts.append(Attempt(name, spent, 0.0))
             break
         task.progress(name)
-        found, attempt = attempted(name, partial(search, family), system, family.allowance)
-        attempts += attempt
-        if not found:
+        evidence, attempt = attempted(name, partial(search, family), system, family.allowance)
+        attempts.append(attempt)
+        if evidence is None:
             # Nothing that covers the enclosure holds, and no loop of the spec need be there.
             if method is not Method.PERIOD and (corner := _unstable_corner(name, family)):
                 attempts.append(Attempt(ENCLOSURE, f"mode {corner} {WIDE}", 0.0))
                 break
             continue
-        (evidence,) = found
-        # Growth that the environment would have to pull for is none that ends the search.
+        # Growth by a pull of the environment does not end the search.
         if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)
             continue
         if best is None and _may_be_faster(evidence, system, limits):
-            # What is looked for behind this must not starve of it.
+            # Later rungs need a part of the budget.
             family = replace(family, allowance=allowance.part(CLIMBING_ON))
         if best is None or _is_faster(evidence, best[1], system):
             best = name, evidence
@@ -202,7 +171,7 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
 
 
 def _may_be_faster(evidence: AbstractEvidence, system: SwitchedSystem, limits: Limits) -> bool:
-    """Tell whether a proof shows less decay than is asked for, and another may show it."""
+    """Tell whether the required decay rate is not proved yet, and within reach."""
     wanted, rate = limits.decay_rate, evidence.proved_rate(system)
     if wanted is None or not limits.optimize_rate or evidence.shows is not Shows.STABILITY:
         return False

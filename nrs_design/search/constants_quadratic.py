@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import ConstantsQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.search.acceptance import OUT_OF_RANGE, Candidates
-from nrs_design.search.balance import mean_norm_coordinates, time_unit
+from nrs_design.search.balance import mean_norm, round_coordinates, time_unit
 from nrs_design.search.family import Family
 from nrs_design.search.rates import Rates, digits, propose, round_form, round_matrix
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
@@ -23,8 +23,7 @@ Indices = NDArray[np.int64]
 
 NEAREST = 0.999
 FEWEST_BITS = 8
-# To this share of itself the largest rate is found; where no rate is asked for, one within a factor
-# of two is enough.
+# Relative resolution of the largest rate, and of any rate where none is requested.
 RESOLUTION, COARSE = 2.0**-7, 0.5
 
 
@@ -33,17 +32,13 @@ def search_constants_quadratic(family: Family) -> Candidates[ConstantsQuadratic]
     system = family.system
     if not np.isfinite(family.matrices).all() or not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    coordinates = mean_norm_coordinates(family.matrices, system.time)
+    coordinates = round_coordinates(mean_norm(family.matrices, system.time))
     if not np.isfinite(coordinates).all():
         return OUT_OF_RANGE
     program = _Program.of(family, coordinates)
     resolution = RESOLUTION if family.optimize_rate else COARSE
     rates = Rates(
-        resolution=resolution,
-        nearest=NEAREST,
-        bits=digits(FEWEST_BITS),
-        always=True,
-        words="found",
+        resolution=resolution, nearest=NEAREST, bits=digits(FEWEST_BITS), always=True, words="found"
     )
     return (yield from propose(program, family, family.limit, rates))
 
@@ -54,7 +49,7 @@ class _Solution:
 
     functions: Array  # Shape (corners, n, n)
     multipliers: Array  # Shape (sets, 2, n, n): F, and G in seconds
-    rate: float  # That it was solved for
+    rate: float  # Rate of the solved program
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +58,9 @@ class _Program:
 
     modes: Array  # Shape (sets, corners, n, n), in coordinates in which their norms are round
     time: Time
-    unit: int  # Of time, two to this power in s
+    unit: int  # Logarithm of the unit of time in s, to the base two
     coordinates: Array  # Shape (n, n); x = T z
-    exponents: Indices  # Of the family
+    exponents: Indices  # Scaling of the family
 
     @classmethod
     def of(cls, family: Family, coordinates: Array) -> _Program:
@@ -106,7 +101,7 @@ class _Program:
         return _Solution(np.ldexp(functions, -scale), np.ldexp(slack, -scale), rate)
 
     def own_rate(self, solution: _Solution) -> float:
-        """Return the rate that was asked for."""
+        """Return the rate of the solved program."""
         return solution.rate
 
     def roundings(
@@ -127,7 +122,7 @@ class _Program:
             )
 
     def _of_functions(self, basis: Array, rate: float) -> Array:
-        """Return what the entries of P add to an inequality, shape (N, 2n, 2n)."""
+        """Return the forms of the entries of P in an inequality, shape (N, 2n, 2n)."""
         nothing = np.zeros_like(basis)
         if self.time is Time.CONTINUOUS:
             slow = -2 * float(np.ldexp(rate, self.unit)) * basis
@@ -136,7 +131,7 @@ class _Program:
 
 
 def _of_multipliers(A: Array) -> Array:
-    """Return what the entries of F and then of G add to an inequality, shape (2 n^2, 2n, 2n)."""
+    """Return the forms of the entries of F, then of G, shape (2 n^2, 2n, 2n)."""
     n = len(A)
     E = np.eye(n * n).reshape(n * n, n, n)
     turned, moved = np.swapaxes(E, 1, 2), E @ A

@@ -15,24 +15,24 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import MODES, Node, at_place
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import FREE
 from nrs_design.proof.switching import NOWHERE, Clock
 from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
-from nrs_design.search.balance import own_norms, round_coordinates, scale_states, separating
+from nrs_design.search.balance import own_norms, round_coordinates, separating
+from nrs_design.search.branches import matrices_of_kinds
 from nrs_design.search.drawing import Drawing, FormCoordinates, Inequality, Solution
-from nrs_design.search.family import Family, limit_rate, to_floats
+from nrs_design.search.family import Family, limit_rate
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
 from nrs_design.search.rates import Rates, digits, propose, rate_at
 from nrs_design.work import Allowance
 
-# Of the slowest decay that a controller has, what its form keeps while it is in force.
+# Decay rates of the form of a controller in force, as shares of the slowest decay of its modes.
 SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)
-# Positions of rates that are tried for each, and the share of the budget for that.
+# Positions of rates that are tried for each of them, and the share of the budget for this.
 LOOKED_AT, LOOKING = (0.0, 0.1, 0.25, 0.4, 0.6), 0.05
 RATES = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
 # Digits of how much larger the forms of a stay are than the first.
@@ -69,13 +69,7 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
     for candidate in together:
         graph = candidate.evidence
         yield Candidate(_at_states(graph, [everywhere] * len(graph.nodes)), candidate.words)
-    parts = [
-        scale_states(
-            to_floats([mode.A for mode in on_turn(family.system, clock, kind).modes]),
-            family.exponents,
-        )
-        for kind in clock.kinds
-    ]
+    parts = matrices_of_kinds(family, clock)
     slowest = [limit_rate(own, Time.DISCRETE) for own in parts]
     limit = max(slowest)
     if not limit < 1:
@@ -88,7 +82,7 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
             program = CountedProgram(drawing, stays, own)
             programs.append((_reach(program, limit, family), program))
     coverings = (True, False) if family.system.roundings else (False,)
-    # The rest of a rate is looked for where the most is known to be there.
+    # The most promising rates come first.
     for reached, program in sorted(programs, key=lambda item: -item[0]):
         if reached:
             yield from propose(program, family, limit, RATES, coverings)
@@ -100,8 +94,8 @@ class CountedProgram:
     """The program of the forms of first samples, whose solutions are forms of all samples."""
 
     drawing: Drawing
-    stays: CountedStays  # Of each controller, the states of a stay
-    rates: Sequence[float]  # At which its form decreases while it is in force
+    stays: CountedStays  # States of a stay, for each controller
+    rates: Sequence[float]  # Contraction of the form of each controller in force
 
     @cached_property
     def first(self) -> FormsProgram:

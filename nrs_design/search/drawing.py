@@ -33,15 +33,14 @@ Fact = tuple[str, int | None]
 # Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
 # and one more; no fewer than for the first of these times, and no more than for the last.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
-Row = tuple[str, Array]
 
 
 @dataclass(frozen=True)
 class FormCoordinates:
-    """Of a form: ``x = 2^d T z``."""
+    """Coordinates of a form: ``x = 2^d T z``."""
 
     exponents: Indices  # The d
-    T: Array  # It keeps apart the states that are zero at some place of the form
+    T: Array  # Separates states that are zero at some node of the form
 
     @property
     def whole(self) -> Array:
@@ -54,9 +53,9 @@ class Drawing:
     """A graph of which the forms are to be found."""
 
     system: SwitchedSystem
-    graph: FormsOnGraph  # Of its forms only the places count, of its multipliers only the facts
-    forms: tuple[int, ...]  # For each node, which form it has: whole, or without the deflection
-    coordinates: tuple[FormCoordinates, ...]  # Of each form
+    graph: FormsOnGraph  # Without values of forms and multipliers
+    forms: tuple[int, ...]  # Index of the form of each node
+    coordinates: tuple[FormCoordinates, ...]  # Coordinates of each form
 
     def like(self, node: int) -> list[int]:
         """Return the nodes with the form of one at its place."""
@@ -75,7 +74,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Error:
-    """What a step adds to the state, ``|e| <= |q z|``; both in the coordinates of the forms."""
+    """Error that a step adds to the state, ``|e| <= |q z|``, in the coordinates of the forms."""
 
     fact: Fact
     column: Array
@@ -97,10 +96,10 @@ class Inequality:
     is_flow: bool
     lasts: float  # Steps, or time in s of an enclosed stay
     is_strict: bool
-    share: float = 1.0  # What the form after a map counts besides
+    share: float = 1.0  # Further factor of the form after a map
 
     def weight(self, rate: float, degree: int, time: Time) -> float:
-        """Return what the form after a map counts, if that before it counts one.
+        """Return the weight of the form after a map, relative to the form before the map.
 
         The rate is alpha in 1/s, or rho per step; the degree is that of the monomials.
         """
@@ -181,7 +180,7 @@ def entries_of(drawing: Drawing, form: int, states: int) -> list[int]:
 def inequalities(
     drawing: Drawing, scales: Mapping[Fact, float] | None = None
 ) -> tuple[list[Inequality], dict[Fact, float]]:
-    """Return all edges, and of what size the multipliers of the facts are that are solved for.
+    """Return all edges, and the scales of the multipliers of the facts.
 
     Sizes that are given are kept.
     """
@@ -277,7 +276,7 @@ def _at_once(drawing: Drawing) -> Iterator[tuple[int, Step, int]]:
 
 
 def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
-    """Yield what a stay makes of the state, for some of its lengths."""
+    """Yield the map of the state over a stay, for some of its lengths."""
     from scipy.linalg import expm
 
     A = np.array(step.edge.source.A.floats())
@@ -289,7 +288,7 @@ def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
 
 
 def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
-    """Leave out edges that differ by the last digits of a number; say which stand for them."""
+    """Return edges that differ by more than rounding, and for each edge the index of its equal."""
     kept: list[Inequality] = []
     groups: dict[object, list[tuple[int, Array]]] = {}
     found = []
@@ -324,7 +323,7 @@ class FloatStep:
 
     M: Array
     errors: tuple[tuple[str, int, Array], ...]  # Entry e of z and row q: ``e^2 <= (q z)^2``
-    crossings: tuple[Row, ...]  # Row c: ``delta (c z) <= 0``
+    crossings: tuple[tuple[str, Array], ...]  # Row c: ``delta (c z) <= 0``
     products: tuple[tuple[str, Array, Array], ...]  # Rows l and r: ``(l z) (r z) >= 0``
 
     @classmethod

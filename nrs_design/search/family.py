@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from itertools import chain, groupby
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, mean_norm, scale_states, separating
-from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import Allowance
 
 # Modes that differ by less, relative to their largest entries, are nearly the same.
@@ -35,7 +34,6 @@ class Family:
     # Work and memory for the searches; unlimited by default.
     allowance: Allowance = field(default_factory=Allowance)
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
-    gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
 
     def stand_ins(self) -> dict[str, str]:
         """Return for each mode the first that is nearly the same; nothing where rules matter.
@@ -55,34 +53,21 @@ class Family:
         allowance: Allowance | None = None,
         *,
         optimize_rate: bool = True,
-        gradient: Gradient | None = None,
     ) -> Family:
         """Convert and balance the modes of a system; modes of unequal size only give the limit."""
-        allowance, gradient = allowance or Allowance(), gradient or Gradient()
+        allowance, lasting = allowance or Allowance(), system.lasting_modes()
+        limit = _slowest(lasting, system.time) if lasting else 0.0
+        if not lasting and system.time is Time.CONTINUOUS:
+            limit = _slowest(system.modes, Time.DISCRETE)
         if not system.is_uniform:
-            limit = _limit(system, [to_floats([mode.A]) for mode in system.modes])
             none = np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64)
-            return cls(system, *none, limit, allowance, optimize_rate, gradient)
+            return cls(system, *none, limit, allowance, optimize_rate)
         matrices = to_floats([mode.A for mode in system.modes])
-        limit = _limit(system, [matrices])
         exponents = balance(matrices)
         scaled = scale_states(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
-        return cls(system, scaled, exponents, limit, allowance, optimize_rate, gradient)
-
-
-def _limit(system: SwitchedSystem, families: list[NDArray[np.float64]]) -> float:
-    lasting = {mode.name for mode in system.lasting_modes()}
-    if len(lasting) < len(system.modes):
-        names = [mode.name for mode in system.modes]
-        matrices = dict(zip(names, chain.from_iterable(families), strict=True))
-        families = [matrices[name][None] for name in names if name in lasting]
-        if not families:
-            sizes = [limit_rate(A[None], Time.DISCRETE) for A in matrices.values()]
-            return float(max(sizes)) if system.time is Time.CONTINUOUS else 0.0
-    limits = [limit_rate(matrices, system.time) for matrices in families]
-    return min(limits) if system.time is Time.CONTINUOUS else max(limits)
+        return cls(system, scaled, exponents, limit, allowance, optimize_rate)
 
 
 def rate_limit(system: SwitchedSystem) -> float | None:
@@ -90,13 +75,17 @@ def rate_limit(system: SwitchedSystem) -> float | None:
 
     In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
     """
-    every = sorted((m.A for m in system.lasting_modes()), key=lambda A: A.shape[0])
-    alike = (to_floats([*group]) for _, group in groupby(every, lambda A: A.shape[0]))
-    limits = [limit_rate(matrices, system.time) for matrices in alike]
-    if not limits:
-        return None
-    limit = min(limits) if system.time is Time.CONTINUOUS else max(limits)
-    return limit if np.isfinite(limits).all() else None
+    lasting = system.lasting_modes()
+    limit = _slowest(lasting, system.time) if lasting else np.nan
+    return limit if np.isfinite(limit) else None
+
+
+def _slowest(modes: Sequence[Mode], time: Time) -> float:
+    """Return the rate of the slowest mode of any sizes, as `limit_rate` does."""
+    ordered = sorted((mode.A for mode in modes), key=lambda A: A.shape[0])
+    alike = (to_floats([*group]) for _, group in groupby(ordered, lambda A: A.shape[0]))
+    limits = np.array([limit_rate(matrices, time) for matrices in alike])
+    return float(limits.min() if time is Time.CONTINUOUS else limits.max())
 
 
 def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
@@ -151,7 +140,7 @@ def to_floats(matrices: Sequence[RationalMatrix]) -> NDArray[np.float64]:
 
 @contextmanager
 def floats_in_silence() -> Iterator[None]:
-    """Let floating point over- and underflow without a word: it only chooses what to try."""
+    """Silence over- and underflow: floating point only proposes."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore", RuntimeWarning)
         yield

@@ -36,13 +36,7 @@ from nrs_design.search.drawing import (
 from nrs_design.search.interior_point import maximize, step_cost
 from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
-from nrs_design.search.sdp import (
-    STEPS,
-    SemidefiniteProgram,
-    pack,
-    packed_columns,
-    unpack,
-)
+from nrs_design.search.sdp import STEPS, SemidefiniteProgram, pack, packed_columns, unpack
 from nrs_design.search.stays import enough_pieces
 from nrs_design.work import Allowance
 
@@ -51,7 +45,7 @@ Indices = NDArray[np.int64]
 
 # With so many edges a program begins.
 FIRST_EDGES, FEW_EACH = 8, 2
-# An edge outside the program keeps at least this share of the margin of those in it.
+# Least margin of an edge outside the program, relative to the margins of its edges.
 NEARLY_ALL = 0.8
 # Work for the first edges from which on a general solver is not asked, nor for one form: to load it
 # takes longer than to find that. Our own method is content with this share of the margin instead.
@@ -62,9 +56,9 @@ START_MULTIPLIER, BACK = 0.1, 0.7
 LARGEST_MULTIPLIER = 64.0
 # Forms reach up to the identity where there are any; all of them below this are zero.
 NOTHING = 1e-4
-# What floating point hides where a form need not decrease, relative to its size.
+# Rounding error where a form need not decrease, relative to its size.
 SLACK = 1e-9
-# What is rounded takes so many times what it takes in the first order, or else so many times.
+# Loss to rounding errors, as multiples of the loss of first order.
 LOST_TO_ERRORS = (1.25, 3.0)
 
 
@@ -90,10 +84,10 @@ class FormsProgram:
         self.every = [timed(edge) for edge in drawn]
         self.edges, self.stands_for = distinct(self.every)
         count = len(self.edges)
-        # Where forms have few edges each, nearly all of these are needed.
+        # With few edges for each form, nearly all are needed.
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
         few = count if whole else min(count, FIRST_EDGES)
-        # The edges that solutions are sought for; what one violates is added, and stays.
+        # Edges of the program; an edge that a solution violates is added, and stays.
         self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         if flows and self.degree > 1:
@@ -213,7 +207,7 @@ class FormsProgram:
 
     @cached_property
     def _starts(self) -> list[int]:
-        """Where the unknowns of each form begin, and behind them the multipliers."""
+        """Index of the first unknown of each form, and of the multipliers behind them."""
         return [0, *(int(end) for end in np.cumsum([n * (n + 1) // 2 for n in self.sizes]))]
 
     def _program(self, active: Sequence[int], rate: float) -> SemidefiniteProgram:
@@ -245,10 +239,7 @@ class FormsProgram:
         return program
 
     def factors(self, rate: float) -> list[float]:
-        """Return what the rate makes of the inequality of each edge: twice that of a flow.
-
-        Of a map it is what the form after it counts.
-        """
+        """Return twice the rate for a flow, and the weight of the form after a map."""
         return [
             2 * self.degree * float(np.ldexp(rate, self.unit))
             if edge.is_flow
@@ -266,7 +257,7 @@ class FormsProgram:
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         if self.degree == 1:
             return replace(self.solution_of(forms), multipliers=share * multipliers)
-        # Inequalities of maps have been divided by what is left of the form after a step.
+        # Inequalities of maps have been divided by the weight of the form after the step.
         keeps = [
             1.0 if edge.is_flow else 1 / f
             for edge, f in zip(self.edges, self.factors(rate), strict=True)
@@ -282,7 +273,7 @@ class FormsProgram:
         return Solution(forms, share * multipliers, vanishing)
 
     def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
-        """Return the inequality of an edge without what counts for the rate."""
+        """Return the inequality of an edge without the term of the rate."""
         Q = solution.forms[edge.after][np.ix_(edge.left, edge.left)]
         form = -np.ldexp(edge.changed(Q), self.unit if edge.is_flow else 0) + N
         place = {fact: k for k, fact in enumerate(self.scales)}
@@ -291,7 +282,7 @@ class FormsProgram:
         return np.asarray(form)
 
     def decrease(self, edge: Inequality, solution: Solution, N: Array, rate: float) -> Array:
-        """Return what must be positive of an edge, its own or that of a like drawing.
+        """Return the form of an edge that must be positive, here or in a drawing of the same shape.
 
         N is the form that vanishes; the rate is in 1/s, or per step.
         """
@@ -351,12 +342,7 @@ class FormsProgram:
         return slowest(rates, default=stable)
 
     def roundings(
-        self,
-        solution: Solution,
-        claim: Fraction,
-        digits: Sequence[int],
-        *,
-        errors: bool = False,
+        self, solution: Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
     ) -> Iterator[FormsOnGraph]:
         """Yield roundings of all forms to integers over one denominator.
 
@@ -409,7 +395,7 @@ class FormsProgram:
                 multipliers=facts,
             )
             if graph.stays and graph.stays.leaving and self.time is Time.CONTINUOUS:
-                # How finely stays of any length are enclosed.
+                # Number of pieces of an enclosed stay.
                 if (pieces := enough_pieces(drawing.system, graph)) is None:
                     continue
                 graph = replace(graph, stays=replace(graph.stays, pieces=pieces))
@@ -426,7 +412,7 @@ def _round_vanishing(
     found, timed = [], [k for k, edge in enumerate(program.every) if edge.is_strict]
     for k, (_, step, _) in zip(timed, graph.edges_in_time(program.drawing.system), strict=True):
         edge = program.every[k]
-        assert isinstance(step, Step)  # polynomials are enclosed by nobody
+        assert isinstance(step, Step)  # no polynomial has enclosed stays
         exponents = program.drawing.coordinates[edge.before].exponents[edge.kept]
         N = round_form(solution.vanishing[program.stands_for[k]], top - exponents, bits)
         factor, unit = _factor(step, program.degree, graph.rate), program.unit * edge.is_flow
@@ -462,7 +448,7 @@ def _taken_by_errors(program: FormsProgram, solution: Solution) -> tuple[dict[Fa
 
 
 def _factor(step: Step, degree: int, rate: Fraction) -> int:
-    """Return what the exact inequality of a lifted step is multiplied with."""
+    """Return the factor of the exact inequality of a lifted step."""
     moved = lifted(step, degree, rate)
     if not step.is_flow:
         return int(moved.units[0]) ** 2

@@ -1,4 +1,4 @@
-"""The switches that a search may take, with their resets, and how long it may stay in between."""
+"""Admissible switches with their resets, and times between them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-# Jumps in order, each into the mode that the next one leaves; the last into that of the first.
+# Indices of consecutive jumps; the last jump leads to the source of the first.
 Cycle = tuple[int, ...]
 
 TIMES = 48
@@ -24,14 +24,14 @@ PER_PRODUCT = 2e-6
 PER_OPERATION = 3e-8
 # Entries of the products that are looked at together.
 CHUNK_ENTRIES = 2_000_000
-# The time between resets that grow by themselves, over the shortest of the other times.
+# Time between resets that grow by themselves, relative to the shortest other time.
 BRIEF = 1e-5
 MAX_CYCLES = 120
 MAX_LENGTH = 64
 MAX_STEPS = 200_000
-# Times of one leg after the other are changed so often, for cycles of three legs and more.
+# Number of sweeps over the times of a cycle of three legs or more.
 SWEEPS = 4
-# How many of the fastest growing cycles are given out.
+# Number of fastest growing cycles that are returned.
 STARTS = 4
 
 
@@ -121,7 +121,7 @@ class Graph:
 
 
 def stay_bounds(system: SwitchedSystem) -> tuple[Array, Array]:
-    """Return the shortest and the longest time of each mode; infinite where there is none."""
+    """Return the shortest and longest time of each mode; infinite without a bound."""
     stays = system.stays().values()
     longest = [np.inf if stay.longest is None else float(stay.longest) for stay in stays]
     return np.array([float(stay.shortest) for stay in stays]), np.array(longest)

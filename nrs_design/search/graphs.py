@@ -1,4 +1,4 @@
-"""Which graph is drawn for which system, and how its program is asked for rates (untrusted)."""
+"""Graphs of systems, and searches for rates of their forms (untrusted)."""
 
 from __future__ import annotations
 
@@ -11,32 +11,25 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.clock import on_turn
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import MODES, Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.steps import FREE, ROUNDING, Stays
-from nrs_design.proof.switching import Clock, Stay
+from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.balance import (
-    balance,
-    mean_norm,
-    round_coordinates,
-    scale_states,
-    separating,
+from nrs_design.search.balance import balance, mean_norm, round_coordinates, separating
+from nrs_design.search.branches import (
+    StepGraph,
+    best_words,
+    matrices_of_kinds,
+    round_nodes,
+    turns_graph,
 )
-from nrs_design.search.branches import StepGraph, best_words, round_forms, turns_graph
 from nrs_design.search.drawing import Drawing, FormCoordinates
-from nrs_design.search.family import (
-    Family,
-    free_motions,
-    separating_coordinates,
-    stand_ins,
-    to_floats,
-)
+from nrs_design.search.family import Family, free_motions, separating_coordinates, stand_ins
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graph import Graph, growing_cycles
 from nrs_design.search.polynomial import (
@@ -61,18 +54,18 @@ BITS_OF_STAYS = (12, 32, 60)
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
 ANY_RATE = Fraction(1)
-# The mean of all modes of a round may grow: what is kept of it then is this.
+# Largest contraction of the mean of all modes of a round, which may grow.
 KEPT = 0.99
-# Where more conditions than this are to be checked, what the arithmetic rounds is left out.
+# Largest number of checked conditions with rounding errors.
 MOST_ROUNDED = 250
-# Numbers of steps that are each shown for a mode that is stable, too.
+# Largest number of stays that are shown one by one for a stable mode.
 FEW_STAYS = 64
 # Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
 # ago.
 FEW_STATES, LONG_AGO = 12, 2
-# Share of what is left for words that limit the rate.
+# Share of the rest of the budget for words that limit the rate.
 WORDS = 0.1
-# The largest rate, where it was not asked for, to this share of it.
+# Relative resolution of the largest rate where it is not requested.
 ROUGH = 0.3
 GROWS = "not looked for: the state grows along a cycle of modes"
 # The lengths of a stay in continuous time, times the size of the mode, that are nearly one.
@@ -83,7 +76,7 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for each mode, in contact and in free motion."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    # What is left of the budget is for simpler functions in kept contact.
+    # The rest of the budget is for simpler functions in kept contact.
     allowance = family.allowance.part(0.25)
     nodes = len(family.system.every_mode)
     allowance.require(Cost(PER_EDGE * 2 * nodes**2), f"a graph of {2 * nodes**2} edges")
@@ -129,7 +122,8 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         return NO_MARGIN
     if not np.isfinite(family.matrices).all():
         return OUT_OF_RANGE
-    limit, ended = _limit(family, clock), None
+    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
+    limit, ended = max((growth for _, growth in words), default=0.0), None
     every = [mode.name for mode in system.every_mode]
     kinds = Counter(clock.kind_of(every))
     # At the largest rate itself there is no room for rounding.
@@ -184,29 +178,15 @@ def _alike(clock: Clock) -> list[tuple[int, int]]:
     return found
 
 
-def _turns(family: Family, clock: Clock) -> list[Array]:
-    """Return the modes of each kind: of the first step of a round, and of the others."""
-    parts = (on_turn(family.system, clock, kind) for kind in clock.kinds)
-    return [
-        scale_states(to_floats([mode.A for mode in part.modes]), family.exponents) for part in parts
-    ]
+def _coordinates(family: Family, clock: Clock) -> Array:
+    """Return the T of every step, which leave the deflection alone.
 
-
-def _coordinates(family: Family, clock: Clock) -> Iterator[Array]:
-    """Yield the T of every step, which leave the deflection alone.
-
-    What a mean mode keeps of the state until it is at rest is round in them.
+    The part of the state that a mean mode keeps until rest is round in them.
     """
-    means = [matrices.mean(axis=0) for matrices in _turns(family, clock)]
+    means = np.array([own.mean(axis=0) for own in matrices_of_kinds(family, clock)])
     apart = round_coordinates if family.system.contact is None else separating
-    graph = StepGraph.of_clock(clock, [*map(str, clock.kinds)], np.array(means), clock.kinds)
-    yield from map(apart, round_forms(graph))
-
-
-def _limit(family: Family, clock: Clock) -> float:
-    """Return the contraction per step of the worst word that is found."""
-    words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
-    return max((growth for _, growth in words), default=0.0)
+    names = [*map(str, clock.kinds)]
+    return round_nodes(StepGraph.of_clock(clock, names, means, clock.kinds), apart)
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
@@ -381,18 +361,21 @@ def graph_of(places: Sequence[str], roundings: int, degree: int = 1) -> FormsOnG
 
 
 def left_modes(system: SwitchedSystem) -> tuple[str, ...]:
-    """Return the modes of which every stay is shown."""
+    """Return the modes of which every stay is shown.
+
+    That asks for less than a decrease, but takes longer.
+    """
     stays = system.stays()
-    return tuple(m.name for m in system.modes if _is_left(system, m, stays[m.name]))
 
+    def is_left(mode: Mode) -> bool:
+        stay = stays[mode.name]
+        if stay.longest is None:
+            return False
+        width = float(stay.longest - stay.shortest)
+        few = width < FEW_STAYS
+        if system.time is Time.CONTINUOUS:
+            # Stays that are nearly of one length are enclosed well.
+            few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
+        return few or not is_stable(mode.A, system.time)
 
-def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
-    """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
-    if stay.longest is None:
-        return False
-    width = float(stay.longest - stay.shortest)
-    few = width < FEW_STAYS
-    if system.time is Time.CONTINUOUS:
-        # Stays that are nearly of one length are enclosed well.
-        few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
-    return few or not is_stable(mode.A, system.time)
+    return tuple(mode.name for mode in system.modes if is_left(mode))

@@ -160,7 +160,7 @@ def _step(
 
 
 def _farthest(d: list[Array], change: list[Array], share: float) -> float:
-    """Return how far a step may go, one at most, as a share of the way to the border."""
+    """Return the length of a step, at most one, as a share of the way to the border."""
     steepest = share
     for own, part in zip(d, change, strict=True):
         root = np.sqrt(own)

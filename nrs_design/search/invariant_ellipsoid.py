@@ -36,11 +36,11 @@ from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
-# Where shares are tried first, relative to the largest, by what factor the next one differs, and
-# how often the best is refined.
+# Shares that are tried first, relative to the largest; factor between the next ones; number of
+# refinements of the best; smallest share.
 USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.024, 0.009, 0.8), 1.5, 3
 SMALLEST = 0.001
-# How far above the least level found the claimed one lies: the nearer, the harder to round.
+# Claimed levels relative to the least level; the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
 STEPS = 4000
@@ -111,7 +111,8 @@ class BoundProgram:
         """Take ellipsoids around the origin, with the square of the level as their level."""
         steps = plain_steps(system, [*map(system.channels.index, channels)], rounding=rounding)
         units = [float(channel.bound) for channel in channels]
-        own = StepUnits.of(frame.T, units, len(system.roundings) * rounding).balanced(steps)
+        units += [1.0] * (len(system.roundings) * rounding)
+        own = StepUnits(frame.T, np.array(units)).balanced(steps)
         program = OneForm.of(steps, own)
         rows = to_floats(output.rows)[:, 0] @ own.T / frame.level
         bounds = tuple(Constraint.bordered(program.basis, row, 1.0) for row in rows)
@@ -123,7 +124,7 @@ class BoundProgram:
         steps, n = list(item.steps(system)), system.order
         T = np.eye(n + 1)
         T[1:, 1:] = frame.T
-        disturbed = StepUnits.of(T, [1.0] * len(item.channels), len(item.roundings))
+        disturbed = StepUnits(T, np.ones(len(item.channels) + len(item.roundings)))
         own = disturbed.balanced(steps)
         ends = {
             name: sign * np.array(row.floats()[0]) @ frame.T / frame.level

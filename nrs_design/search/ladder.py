@@ -1,4 +1,4 @@
-"""The ladder: which searches there are, what they can decide, and in which order they are tried."""
+"""The ladder: all searches in their order, with the systems that they can decide."""
 
 from __future__ import annotations
 
@@ -44,22 +44,33 @@ class Facts:
         left = affordable(mode for mode in system.modes if mode.name not in lasting)
         return cls(system, all(fits and is_stable(mode.A, system.time) for mode, fits in left))
 
+    def always(self) -> bool:
+        """Return True, for rungs that apply to any system."""
+        return True
+
+    def is_uniform(self) -> bool:
+        """Tell whether all modes have the same number of states."""
+        return self.system.is_uniform
+
     def is_continuous(self) -> bool:
         """Tell whether time is continuous."""
         return self.system.time is Time.CONTINUOUS
 
     def counts_stays(self) -> bool:
-        """Tell whether modes take turns as dwell times allow."""
+        """Tell whether modes are scheduled by counted dwell times."""
         return self.system.clock is not None and self.system.clock.counts_stays
 
     def may_share_a_function(self) -> bool:
         """Tell whether one function for all modes could prove anything."""
-        system = self.system
-        return system.is_uniform and not system.switching.resets and self.leaves_stable
+        return self.is_uniform() and not self.system.switching.resets and self.leaves_stable
 
     def may_share_an_ellipsoid(self) -> bool:
-        """Tell whether a common quadratic function has to be searched for."""
+        """Tell whether to search for a common quadratic function."""
         return self.may_share_a_function() and self.system.order > 1
+
+    def may_share_a_square(self) -> bool:
+        """Tell whether the square of the one state could be a common function."""
+        return self.may_share_a_function() and self.system.order == 1
 
     def loses_contact(self) -> bool:
         """Tell whether one function has to cover the loss of contact."""
@@ -71,7 +82,7 @@ class Facts:
         return contact is not None and not contact.pulls and self.may_share_an_ellipsoid()
 
     def rounds(self) -> bool:
-        """Tell whether a quadratic function has to cover what the arithmetic rounds."""
+        """Tell whether a quadratic function has to cover rounding errors of the arithmetic."""
         kept = self.system.contact is None
         return bool(self.system.roundings) and kept and self.may_share_an_ellipsoid()
 
@@ -81,20 +92,20 @@ class Facts:
         return not (switching.is_arbitrary or switching.fixed_ends)
 
     def is_of_words(self) -> bool:
-        """Tell whether signals are words of modes in discrete time, and nothing else acts."""
+        """Tell whether signals are plain sequences of modes in discrete time."""
         system = self.system
         acting = (system.contact, system.flights, system.clock, system.saturation)
         if any(acting) or system.roundings or system.switching.fixed_ends:
             return False
-        return not self.is_continuous() and system.is_uniform and len(system.modes) > 1
+        return not self.is_continuous() and self.is_uniform() and len(system.modes) > 1
 
     def has_values(self) -> bool:
-        """Tell whether the modes at the values of a constant parameter can be looked at."""
-        switching = self.system.switching
-        return bool(switching.fixed_ends) and self.system.is_uniform and self.leaves_stable
+        """Tell whether there are constant parameters, whose values can be examined one by one."""
+        fixed = bool(self.system.switching.fixed_ends)
+        return fixed and self.is_uniform() and self.leaves_stable
 
 
-# What looks for growth, or for why there is no quadratic function.
+# Methods that search for growth, or for an obstruction to quadratic functions.
 REFUTING = (None, Method.PERIOD, Method.VALUE, Method.OBSTRUCTION)
 
 
@@ -102,26 +113,26 @@ REFUTING = (None, Method.PERIOD, Method.VALUE, Method.OBSTRUCTION)
 class Rung:
     """One row of the ladder."""
 
-    name: str  # What the reader is told
-    method: Method | None  # What asks for it alone; None for what is tried whatever is asked for
-    applies: Callable[[Facts], bool]  # Tells whether it can decide a system
-    # Yields candidates for a family, and for a degree if it rises.
+    name: str  # For the reader
+    method: Method | None  # Option that asks for this rung alone; None for one of every method
+    applies: Callable[[Facts], bool]  # Tells whether the rung can decide a system
+    # Yields candidates for a family, and for a size if the rung has several.
     search: Callable[..., Candidates[AbstractEvidence]]
-    # Predicts what a degree takes, for a rung that is tried with ever higher ones.
+    # Cost of a degree, for a rung that is tried with ever higher degrees.
     cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
-    # Tells whether it is worth trying where it was not asked for alone.
+    # Tells whether the rung is worth trying where the method is auto.
     in_auto: Callable[[Facts], bool] = lambda facts: True
-    # A degree that is predicted to take more work is tried with the higher ones, at last.
+    # Degrees that are predicted to take more work are tried after all other rungs.
     first: float = inf
-    # Of a rung that rises in the steps that its forms remember: how many, and what that takes.
+    # Costs by length, for a rung whose forms have a memory of ever more steps.
     lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
-    degree: int = 2  # Of these forms
-    clocked: bool = False  # It is for modes that take turns, and for no others
-    # What it finds is refuted by growth in kept contact, or is such growth itself.
+    degree: int = 2  # Degree of these forms
+    clocked: bool = False  # Whether the rung is for systems with a clock, and for no others
+    # Whether growth in kept contact refutes the result of the rung, or is it.
     in_kept_contact: bool = True
 
     def is_idle(self, known: frozenset[Shows]) -> bool:
-        """Tell whether it can find nothing more."""
+        """Tell whether the rung can add nothing to known conclusions."""
         gradient = self.method is Method.GRADIENT
         if Shows.STABILITY in known and (gradient or self.method in REFUTING):
             return True
@@ -129,66 +140,61 @@ class Rung:
         return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
-        """Return how many steps are made before the rungs below: of the quick first degrees."""
+        """Return the number of steps before the rungs below: those of the quick first degrees."""
         if self.first == inf:
             return FIRST_DEGREES
         sizes = islice(self._sizes(system), FIRST_DEGREES if self.cost else None)
         return sum(cost.work <= self.first for _, cost in sizes)
 
-    def _sizes(self, system: SwitchedSystem, asked: float = inf) -> Iterator[tuple[int, Cost]]:
-        """Yield lengths or halves of degrees that it rises to, with what they take.
+    def _sizes(self, system: SwitchedSystem, highest: float = inf) -> Iterator[tuple[int, Cost]]:
+        """Yield lengths or halves of degrees, up to the highest half, with their costs.
 
-        Each degree takes about four times the one before, so what all lower ones took is a part of
-        what the last one takes. In one state, all forms of a degree are alike.
+        In one state, all forms of a degree are alike.
         """
-        if self.lengths is not None and self.degree <= 2 * asked:
+        if self.lengths is not None and self.degree <= 2 * highest:
             yield from self.lengths(system).items()
-        if self.cost is None or system.order == 1:
-            return
-        from nrs_design.search.polynomial import highest_degree
+        if self.cost is not None and system.order > 1:
+            from nrs_design.search.polynomial import rising_degrees
 
-        highest, degrees = int(min(highest_degree(system.order), asked)), [2]
-        while degrees[-1] < highest:
-            degrees.append(min(degrees[-1] + max(1, degrees[-1] // 3), highest))
-        yield from ((d, self.cost(system, d)[0]) for d in degrees if d <= highest)
+            for d in rising_degrees(system.order, highest):
+                yield d, self.cost(system, d)[0]
 
     def is_wanted(self, facts: Facts, method: Method) -> bool:
-        """Tell whether to try it, given what was asked for."""
+        """Tell whether to try the rung for a method."""
         asked = self.in_auto(facts) if method is Method.AUTO else self.method in {None, method}
         return asked and self.can_decide(facts)
 
     def can_decide(self, facts: Facts) -> bool:
-        """Tell whether it can decide a system."""
+        """Tell whether the rung can decide a system."""
         return self.clocked == (facts.system.clock is not None) and self.applies(facts)
 
     def _sized(self, size: int, family: Family) -> Candidates[AbstractEvidence]:
         return self.search(family, size)
 
     def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
-        """Yield itself, or searches of rising size and the reason why there is no higher degree.
+        """Yield the search, or searches of rising size and why there is no higher degree.
 
-        They rise while they are predicted to fit into what is left of the budget, so how far they
-        rise does not depend on the machine.
+        Sizes rise while their predicted cost fits into the budget, on any machine.
         """
         if self.cost is None and self.lengths is None:
             yield self.name, self.search
             return
-        asked = inf if limits.max_degree is None else limits.max_degree // 2
-        for size, cost in self._sizes(system, asked):
+        highest = inf if limits.max_degree is None else limits.max_degree // 2
+        for size, cost in self._sizes(system, highest):
             fits = allowance.affords(cost)
-            named = f"degree {2 * size}" if self.cost else counted(size, "step")
-            yield f"{self.name} of {named}", partial(self._sized, size)
+            text = f"degree {2 * size}" if self.cost else counted(size, "step")
+            yield f"{self.name} of {text}", partial(self._sized, size)
             if not fits:
                 return
         if self.cost is None or system.order == 1:
             return
         from nrs_design.search.polynomial import HELD, highest_degree
 
-        if asked < highest_degree(system.order):
-            step = f"{self.name} of degree {2 * asked + 2}"
+        if highest < highest_degree(system.order):
+            step = f"{self.name} of degree {2 * highest + 2}"
             yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
-            return
-        yield f"{self.name} of higher degree", _refuse(f"not tried: {HELD}")
+        else:
+            yield f"{self.name} of higher degree", _refuse(f"not tried: {HELD}")
 
 
 def _refuse(reason: str) -> Search:
@@ -201,102 +207,85 @@ def _refuse(reason: str) -> Search:
     return search
 
 
-def _in(module: str, name: str) -> Callable[..., Any]:
-    """Name a function of a module here: most rungs are never reached, and need not be loaded."""
+def _in(place: str) -> Callable[..., Any]:
+    """Return a function of a module here, which is loaded when it is first called."""
+    module, _, name = place.partition(".")
     return late_function(f"nrs_design.search.{module}", name)
 
 
-def _always(facts: Facts) -> bool:
-    """Say yes."""
-    return True
-
-
-def _uniform(facts: Facts) -> bool:
-    return facts.system.is_uniform
-
-
-TOGETHER, MODES = _in("graphs", "search_together"), _in("graphs", "search_modes")
-OBSTRUCTION = _in("obstruction", "search_obstruction")
+TOGETHER, MODES = _in("graphs.search_together"), _in("graphs.search_modes")
+OBSTRUCTION, GRADIENT = _in("obstruction.search_obstruction"), _in("gradient.search_by_gradient")
+AT_VALUES = _in("unstable_value.search_switching_at_values")
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
     Rung(
         "quadratic for each controller",
         Method.PERIODIC_QUADRATIC,
         Facts.counts_stays,
-        _in("counted_stays", "search_stays"),
+        _in("counted_stays.search_stays"),
         clocked=True,
     ),
     Rung(
         "periodic quadratic",
         Method.PERIODIC_QUADRATIC,
         lambda f: not f.counts_stays(),
-        _in("graphs", "search_periodic_quadratic"),
+        _in("graphs.search_periodic_quadratic"),
         clocked=True,
     ),
-    Rung("rounds", Method.PERIOD, _always, _in("period", "search_rounds"), clocked=True),
-    Rung("suspicious modes", None, _uniform, _in("unstable_mode", "examine_suspicious_modes")),
-    Rung(
-        "one state",
-        Method.LMI,
-        lambda f: f.may_share_a_function() and f.system.order == 1,
-        _in("graphs", "decide_one_state"),
-    ),
+    Rung("rounds", Method.PERIOD, Facts.always, _in("period.search_rounds"), clocked=True),
+    Rung("suspicious modes", None, Facts.is_uniform, _in("unstable_mode.examine_suspicious_modes")),
+    Rung("one state", Method.LMI, Facts.may_share_a_square, _in("graphs.decide_one_state")),
     Rung("conewise quadratic", Method.CONEWISE_QUADRATIC, Facts.loses_contact, TOGETHER),
     Rung("quadratic, with roundings", Method.LMI, Facts.rounds, TOGETHER),
-    # Before what takes for granted that contact is kept; that no quadratic function exists is said
-    # of the matrices all the same.
+    # Before the rungs that assume that contact is kept. That no quadratic function exists is a
+    # statement on the matrices in any contact.
     Rung("obstruction in contact", Method.OBSTRUCTION, Facts.may_bounce, OBSTRUCTION),
     Rung(
         "conewise mode quadratic",
         Method.CONEWISE_MODE_QUADRATIC,
         lambda f: f.may_bounce() and not f.is_continuous(),
-        _in("graphs", "search_conewise_modes"),
+        _in("graphs.search_conewise_modes"),
     ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
         lambda f: f.may_bounce() and f.is_continuous(),
-        _in("graphs", "search_conewise_polynomial"),
-        cost=_in("polynomial", "conewise_cost"),
+        _in("graphs.search_conewise_polynomial"),
+        cost=_in("polynomial.conewise_cost"),
         first=QUICK,
     ),
-    # After what proves through the loss of contact, before what speaks of kept contact.
+    # After the proofs that cover the loss of contact, before those for kept contact.
     *(
         Rung(
             f"{what} with loss of contact",
             Method.PERIOD,
             lambda f: f.system.is_losable,
-            _in("unstable_contact", "search_contact"),
+            _in("unstable_contact.search_contact"),
             clocked=clocked,
             in_kept_contact=False,
         )
         for clocked, what in ((False, "growth"), (True, "rounds"))
     ),
-    Rung("lmi", Method.LMI, Facts.may_share_an_ellipsoid, _in("graphs", "search_by_lmi")),
+    Rung("lmi", Method.LMI, Facts.may_share_an_ellipsoid, _in("graphs.search_by_lmi")),
     Rung(
         "obstruction",
         Method.OBSTRUCTION,
         lambda f: f.may_share_a_function() and not f.may_bounce(),
         OBSTRUCTION,
     ),
-    Rung(
-        "gradient",
-        Method.GRADIENT,
-        Facts.may_share_a_function,
-        _in("gradient", "search_by_gradient"),
-    ),
-    Rung("every mode", None, _always, _in("unstable_mode", "examine_every_mode")),
-    Rung("constant values", Method.VALUE, Facts.has_values, _in("unstable_value", "search_value")),
+    Rung("gradient", Method.GRADIENT, Facts.may_share_a_function, GRADIENT),
+    Rung("every mode", None, Facts.always, _in("unstable_mode.examine_every_mode")),
+    Rung("constant values", Method.VALUE, Facts.has_values, _in("unstable_value.search_value")),
     Rung(
         "constants quadratic",
         Method.CONSTANTS_QUADRATIC,
         Facts.has_values,
-        _in("constants_quadratic", "search_constants_quadratic"),
+        _in("constants_quadratic.search_constants_quadratic"),
     ),
     Rung(
         "mode quadratic",
         Method.MODE_QUADRATIC,
-        _always,
+        Facts.always,
         MODES,
         # Under arbitrary switching in continuous time, all modes have the same function.
         in_auto=lambda f: (
@@ -307,22 +296,22 @@ LADDER: tuple[Rung, ...] = (
         "quadratic with a memory",
         Method.MEMORY_QUADRATIC,
         Facts.is_of_words,
-        _in("memory", "search_memory"),
-        lengths=_in("memory", "quadratic_memories"),
+        _in("memory.search_memory"),
+        lengths=_in("memory.quadratic_memories"),
         first=QUICK,
     ),
     Rung(
         "words in the norms of forms",
         Method.PERIOD,
         Facts.is_of_words,
-        _in("memory", "search_extremal_words"),
+        _in("memory.search_extremal_words"),
     ),
     Rung(
         "quartic with a memory",
         Method.MEMORY_POLYNOMIAL,
         Facts.is_of_words,
-        _in("memory", "search_quartic_memory"),
-        lengths=_in("memory", "quartic_memories"),
+        _in("memory.search_quartic_memory"),
+        lengths=_in("memory.quartic_memories"),
         degree=4,
         first=QUICK,
     ),
@@ -330,34 +319,29 @@ LADDER: tuple[Rung, ...] = (
         "mixture",
         Method.MIXTURE,
         lambda f: f.system.switching.is_arbitrary and f.is_continuous(),
-        _in("unstable_value", "search_mixture"),
+        _in("unstable_value.search_mixture"),
     ),
     Rung(
         "polynomial",
         Method.POLYNOMIAL,
         Facts.may_share_a_function,
-        _in("graphs", "search_polynomial"),
-        cost=_in("polynomial", "family_cost"),
+        _in("graphs.search_polynomial"),
+        cost=_in("polynomial.family_cost"),
     ),
     Rung(
         "mode polynomial",
         Method.MODE_POLYNOMIAL,
         lambda f: f.has_rules() and not f.is_continuous(),
         MODES,
-        cost=_in("polynomial", "functions_cost"),
+        cost=_in("polynomial.functions_cost"),
     ),
-    Rung("period", Method.PERIOD, _uniform, _in("period", "search_period")),
-    Rung(
-        "switching at constant values",
-        Method.VALUE,
-        Facts.has_values,
-        _in("unstable_value", "search_switching_at_values"),
-    ),
+    Rung("period", Method.PERIOD, Facts.is_uniform, _in("period.search_period")),
+    Rung("switching at constant values", Method.VALUE, Facts.has_values, AT_VALUES),
 )
 
 
 def applicable_methods(system: SwitchedSystem) -> set[Method]:
-    """Return what can be asked for, given the system's kind of switching and time."""
+    """Return the methods that apply to a system."""
     facts = Facts.of(system)
     return {rung.method for rung in LADDER if rung.method is not None and rung.can_decide(facts)}
 

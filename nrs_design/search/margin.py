@@ -1,4 +1,4 @@
-"""How far along an axis there is a proof, and from where on a refutation.
+"""Largest number on an axis with a proof, and smallest number with a refutation.
 
 A number on an axis makes a system: a scale of ranges, a delay, a period, a number of misses, a
 dwell time with the opposite sign. The larger it is, the more has to hold. Numbers are decided by
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
     from nrs_design.search.certification import Certification
 
-# Bisections of an end; a refuted one is slow to look for, as beside it nothing is decided.
+# Bisections of an end; refuted ends are slow, as no verdict is found next to them.
 STEPS, PERIOD_STEPS, DWELL_STEPS, REFUTED_STEPS = 8, 4, 12, 6
 # Ranges are stretched by up to this, without a proof no more than so often; periods are doubled or
 # halved so often.
 LARGEST_SCALE, IDLE, DOUBLINGS = 64, 3, 4
 # An exact test of a mode with more samples on their way takes too long.
 FARTHEST_DELAY = 32
-# Proofs for ever shorter dwell times, but none for zero: enough of them.
+# Halvings of a dwell time, where ever shorter ones are proved but zero is not.
 HALVINGS = 64
 
 Assemble = Callable[[Fraction], SwitchedSystem]
@@ -56,7 +56,7 @@ class Bracket:
 class CommandMargin:
     """Disturbances under which the force limit is proved to be kept, and those that break it."""
 
-    limit: Fraction  # Of the force, in N m
+    limit: Fraction  # Force limit in N m
     # By disturbance: kept up to the first number, in the proportion in which the spec declares
     # them; broken by a simulated run at the second one; with the unit.
     bounds: Mapping[str, tuple[Fraction, Fraction, str]]
@@ -64,7 +64,7 @@ class CommandMargin:
 
 @dataclass(frozen=True)
 class MarginBrackets:
-    """What `--margin` finds beside the box of ranges."""
+    """Brackets of `--margin` beside the box of ranges."""
 
     # Longest delay of the force sample, from the shortest declared one on; None without sampling.
     delay: Bracket | None
@@ -73,33 +73,25 @@ class MarginBrackets:
     command: CommandMargin | None
 
 
+@dataclass(frozen=True)
 class MarginAxis:
-    """The numbers that were tried, each once, and what was found there.
+    """Numbers on an axis that were tried, each once, with the results."""
 
-    `what` and `unit` tell a number to whoever listens before it is decided.
-    """
-
-    def __init__(
-        self,
-        assemble: Assemble,
-        certify: Certify,
-        progress: Progress = silent,
-        what: str = "",
-        unit: str = "",
-        *,
-        whole: bool = False,
-    ) -> None:
-        self._assemble, self._certify, self._progress = assemble, certify, progress
-        self._what, self._unit, self._whole = what, unit, whole
-        # What is found at a number, or why it makes no system.
-        self.found: dict[Fraction, Certification | str] = {}
+    assemble: Assemble
+    certify: Certify
+    progress: Progress = silent
+    what: str = ""  # Name and unit of a number, for the progress
+    unit: str = ""
+    whole: bool = False  # Whether numbers are integers
+    # Result at each number, or why it makes no system.
+    found: dict[Fraction, Certification | str] = field(default_factory=dict)
 
     def at(self, number: Fraction) -> Certification | str:
-        """Return what is found at a number; it is decided if it was not yet."""
+        """Return the result at a number, which is decided here unless it is known."""
         if number not in self.found:
-            self._progress(f"{self._what} {self._text(number)}{self._known()}")
+            self.progress(f"{self.what} {self._text(number)}{self._known()}")
             system = self._assembled(number)
-            self.found[number] = system if isinstance(system, str) else self._certify(system)
+            self.found[number] = system if isinstance(system, str) else self.certify(system)
         return self.found[number]
 
     def is_proved(self, number: Fraction) -> bool:
@@ -130,8 +122,7 @@ class MarginAxis:
         for number in up:
             if idle <= 0 or any(n <= number and self.is_refuted(n) for n in self.found):
                 break
-            if isinstance(fault := self._assembled(number), str):
-                self.found[number] = fault
+            if not self._makes_system(number):
                 inside = max(n for n, one in self.found.items() if not isinstance(one, str))
                 self.at(self._sharpened(inside, number, self._makes_system, steps))
                 break
@@ -164,7 +155,7 @@ class MarginAxis:
     ) -> Fraction:
         for _ in range(steps):
             middle = (accepted + other) / 2
-            if self._whole:
+            if self.whole:
                 middle = Fraction(int(middle))
             if middle in (accepted, other):
                 break
@@ -173,17 +164,18 @@ class MarginAxis:
 
     def _assembled(self, number: Fraction) -> SwitchedSystem | str:
         try:
-            return self._assemble(number)
+            return self.assemble(number)
         except NrsDesignError as error:
             return error.message
 
     def _makes_system(self, number: Fraction) -> bool:
-        if isinstance(fault := self._assembled(number), str):
-            self.found[number] = fault
-        return not isinstance(fault, str)
+        system = self._assembled(number)
+        if isinstance(system, str):
+            self.found[number] = system
+        return not isinstance(system, str)
 
     def _why_none(self) -> str:
-        """Say where numbers that are not refuted end, and why there."""
+        """Name the largest number that was tried without a refutation, and why the search ended."""
         longest = max((n for n, one in self.found.items() if not isinstance(one, str)))
         beyond = min((n for n in self.found if n > longest), default=None)
         why = "the search ends there"
@@ -199,7 +191,7 @@ class MarginAxis:
         return f" ({', '.join(known)})" if known else ""
 
     def _text(self, number: Fraction) -> str:
-        return nearly(abs(number), self._unit)
+        return nearly(abs(number), self.unit)
 
 
 def find_margin(
@@ -214,13 +206,12 @@ def find_margin(
     `known`, found at scale 1, perhaps by a longer search, is the least that is reported. An error
     if not even the nominal values make a system.
     """
-    axis, one = MarginAxis(assemble, certify, progress, "box scaled by"), Fraction(1)
+    one = Fraction(1)
     if known is None:
         assemble(Fraction(0))  # Raises what is wrong, and where.
-    else:
-        axis.found[one] = known
-    up = _doubled(one, Fraction(LARGEST_SCALE))
-    return axis.bracket(one, [Fraction(0)], up, idle=IDLE)
+    at_first: dict[Fraction, Certification | str] = {} if known is None else {one: known}
+    axis = MarginAxis(assemble, certify, progress, "box scaled by", found=at_first)
+    return axis.bracket(one, [Fraction(0)], _doubled(one, Fraction(LARGEST_SCALE)), idle=IDLE)
 
 
 def find_longest_delay(
@@ -239,8 +230,14 @@ def find_longest_delay(
     tells in which contact, empty for any. `known` is on the declared ones.
     """
     declared, longest = map(Fraction, delays[1:])
-    axis = MarginAxis(lambda n: assemble(delays[0], int(n)), certify, progress, "delay", whole=True)
-    axis.found[declared] = known
+    axis = MarginAxis(
+        lambda n: assemble(delays[0], int(n)),
+        certify,
+        progress,
+        "delay",
+        whole=True,
+        found={declared: known},
+    )
     down = (Fraction(n) for n in range(delays[1] - 1, delays[0] - 1, -1))
     found = axis.bracket(declared, down, _doubled(declared, longest))
     if found.refuted is not None:
@@ -273,10 +270,9 @@ def find_longest_period(
     Other periods make other systems: nothing follows from one for the ones in between. `known` is
     on the period of the spec.
     """
-    axis = MarginAxis(assemble, certify, progress, "period", "s")
-    axis.found[period] = known
+    axis = MarginAxis(assemble, certify, progress, "period", "s", found={period: known})
     factors = [Fraction(2) ** k for k in range(1, DOUBLINGS + 1)]
-    down, up = ([period / f for f in factors], [period * f for f in factors])
+    down, up = (period / f for f in factors), (period * f for f in factors)
     return axis.bracket(period, down, up, PERIOD_STEPS)
 
 
@@ -289,10 +285,10 @@ def find_most_misses(
     progress: Progress = silent,
 ) -> Bracket:
     """Bracket how many steps may be missed, up to `most`; `known` is on the declared number."""
-    axis = MarginAxis(assemble, certify, progress, "misses", whole=True)
-    axis.found[Fraction(declared)] = known
+    start = Fraction(declared)
+    axis = MarginAxis(assemble, certify, progress, "misses", whole=True, found={start: known})
     down = (Fraction(declared >> k) for k in range(1, declared.bit_length()))
-    return axis.bracket(Fraction(declared), down, _doubled(Fraction(declared), Fraction(most)))
+    return axis.bracket(start, down, _doubled(start, Fraction(most)))
 
 
 def find_shortest_dwell(
@@ -310,12 +306,9 @@ def find_shortest_dwell(
         # From where motions decay under saturation is no matter of a margin.
         return replace(system, switching=switching, saturation=None)
 
-    axis, longest = (
-        MarginAxis(assemble, certify, progress, "dwell time", "s"),
-        Fraction(LONGEST_DWELL),
-    )
-    if (dwell := _common_dwell(system, known)) is not None:
-        axis.found[-dwell] = known
+    longest, dwell = Fraction(LONGEST_DWELL), _common_dwell(system, known)
+    at_first: dict[Fraction, Certification | str] = {} if dwell is None else {-dwell: known}
+    axis = MarginAxis(assemble, certify, progress, "dwell time", "s", found=at_first)
     free = axis.at(Fraction(0))
     assert not isinstance(free, str), "it is the system itself"
     if axis.is_refuted(Fraction(0)) and _has_unstable_mode(free):
@@ -331,7 +324,7 @@ def find_shortest_dwell(
 
 
 def _doubled(start: Fraction, most: Fraction) -> Iterable[Fraction]:
-    """Yield numbers beyond a start, twice as large each, and at last the largest."""
+    """Yield the doubles of a start up to a largest number."""
     while start < most:
         start = min(2 * start or Fraction(1), most)
         yield start
@@ -367,7 +360,7 @@ def _fastest_time(system: SwitchedSystem) -> Fraction:
 
 
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:
-    """Return what the disturbances may be for the limit of an output, by proportion.
+    """Return bounds of the disturbances for the limit of an output, by proportion.
 
     `reached` is what the output of a simulated run reaches under the disturbances of a checked
     bound.

@@ -1,4 +1,4 @@
-"""Forms that remember the last steps: a node for each word of places (untrusted).
+"""Forms with a memory of the last steps: a node for each sequence of places (untrusted).
 
 Such a graph is path-complete for words of any length (Ahmadi, Jungers, Parrilo and Roozbehani, SIAM
 Journal on Control and Optimization 52, 2014, section 6); under rules its words are those that the
@@ -37,26 +37,25 @@ from nrs_design.search.polynomial import PER_CHECK, form_sizes, graph_cost
 from nrs_design.search.rates import POLYNOMIAL, propose
 from nrs_design.work import Allowance, Cost
 
-# The check follows sets of nodes, of which there are as many as words of any length up to that of
-# the memory.
+# The check follows sets of nodes, one for each sequence up to the length of the memory.
 MOST_WORDS = MAX_SETS // 2
-# A longer memory than this, or than one of this many edges, is not drawn.
-LONGEST, MOST_EDGES = 24, 2048
+# Most steps and edges of a memory.
+MOST_STEPS, MOST_EDGES = 24, 2048
 
 Word = tuple[str, ...]
 Array = NDArray[np.float64]
 
-# Steps of a word, and the work of a program whose forms give the norms.
+# Most steps of a sequence of modes, and work of a program whose forms give the norms.
 LONGEST, WORK = 400, 0.1
-# The least growth that forms show is found to this share of what it is above that of a word.
+# Resolution of the least growth of forms, relative to its distance from the growth of a word.
 SHARE, NEAR = 0.2, 1e-4
 HALVINGS = 12
-# What forms are to show at first, where a word that grows by one is sought, and then.
+# Upper bounds of the growth that are tried in turn.
 BOUNDS = (1.05, 1.5, 6.0)
 
 
 def words(system: SwitchedSystem, length: int) -> list[Word] | None:
-    """Return the words of places of so many letters; None for too many."""
+    """Return all sequences of places of a length; None if there are too many."""
     after = following(system)
     found: list[Word] = [(name,) for name in after]
     for _ in range(length - 1):
@@ -66,8 +65,8 @@ def words(system: SwitchedSystem, length: int) -> list[Word] | None:
 
 
 def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
-    """Return how many words there are of so many letters, and of one more; None for too many."""
-    if length > LONGEST or (found := words(system, length)) is None:
+    """Return the numbers of sequences of a length and of one more; None if too many."""
+    if length > MOST_STEPS or (found := words(system, length)) is None:
         return None
     after = following(system)
     edges = sum(len(after[word[-1]]) for word in found)
@@ -88,7 +87,7 @@ def following(system: SwitchedSystem) -> dict[str, list[str]]:
 
 
 def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing:
-    """Draw a node for each word of so many steps; the degree is half that of the forms.
+    """Draw a node for each sequence of a length; the degree is half that of the forms.
 
     Without rules, the letter that a step adds is its mode; under rules, the mode that it leads to.
     """
@@ -114,7 +113,7 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
 
 
 def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[int, Cost]:
-    """Return how many steps forms of degree 2d may remember, with what that takes.
+    """Return possible lengths of the memory of forms of degree 2d, with their costs.
 
     In discrete time, and no fewer steps than `first`.
     """
@@ -124,23 +123,23 @@ def memories(system: SwitchedSystem, degree: int = 1, first: int = 1) -> dict[in
     if not all(any(name in ends for ends in following(system).values()) for name in names):
         # A mode that nothing leads to ends no word, and a run may begin in it.
         return found
-    for length in range(first, LONGEST + 1 if order <= MAX_MONOMIALS else 0):
+    for length in range(first, MOST_STEPS + 1 if order <= MAX_MONOMIALS else 0):
         if (counts := count_words(system, length)) is None:
-            return found
-        nodes, edges = counts
-        cost, _ = graph_cost(system.order, degree, nodes, edges)
+            break
+        edges = counts[1]
+        cost, _ = graph_cost(system.order, degree, *counts)
         checked = cost.work + 2 * edges * PER_CHECK * order**2
         found[length] = replace(cost, work=checked)
     return found
 
 
 def quadratic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of quadratic forms; under rules, those of the modes remember one step."""
+    """Return `memories` of quadratic forms; under rules, forms of modes have a memory of one."""
     return memories(system, first=1 if system.switching.is_arbitrary else 2)
 
 
 def quartic_memories(system: SwitchedSystem) -> dict[int, Cost]:
-    """Return the same of forms of degree 4."""
+    """Return `memories` of forms of degree 4."""
     return memories(system, 2) if system.order > 1 else {}
 
 
@@ -198,13 +197,18 @@ def words_in_norms(
         return
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     graph, free = program.drawing.graph, system.switching.is_arbitrary
-    own, places = _edges_of(steps, free=free), [node.place for node in graph.nodes]
-    rows = list[tuple[int, int, int]]()
+    if not free and steps.count > len(index):
+        return  # The graph of steps counts the steps of a stay, and the forms do not.
+    steps_by_ends = zip(steps.sources, steps.targets, steps.modes, strict=True)
+    edge_of = {ends: k for k, ends in enumerate(steps_by_ends)}
+    places, rows = [node.place for node in graph.nodes], list[tuple[int, int, int]]()
     for a, step, b in graph.edges_in_time(system):
-        key = tuple(index[name] for name in ((step.mode,) if free else (places[a], places[b])))
-        if key not in own:
-            return  # A stay of several steps is none of this graph.
-        rows.append((a, b, own[key]))
+        ends = (0, 0, index[step.mode])
+        if not free:
+            ends = index[places[a]], index[places[b]], index[places[b]]
+        if ends not in edge_of:
+            return  # It is a stay of several steps.
+        rows.append((a, b, edge_of[ends]))
     order = np.argsort([a for a, *_ in rows], kind="stable")
     sources, targets, edges = np.array(rows)[order].T
     maps = np.array([program.every[k].M for k in order])
@@ -215,18 +219,8 @@ def words_in_norms(
         yield tuple(int(edges[k]) for k in word), growth
 
 
-def _edges_of(steps: StepGraph, *, free: bool) -> dict[tuple[int, ...], int]:
-    """Return the edge of each mode, or of each pair of modes that follow each other."""
-    every = range(len(steps.modes))
-    if free:
-        return {(int(steps.modes[k]),): k for k in every}
-    if steps.count != len(steps.names):
-        return {}
-    return {(int(steps.sources[k]), int(steps.targets[k])): k for k in every}
-
-
 def search_extremal_words(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a word that grows, in the norms of forms that remember some steps."""
+    """Search for a growing sequence of modes, in the norms of forms with a memory."""
     system, allowance = family.system, family.allowance
     fitting = [length for length, cost in memories(system).items() if cost.work <= WORK]
     if not fitting or not np.isfinite(family.matrices).all():

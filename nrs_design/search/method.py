@@ -1,4 +1,4 @@
-"""What a search can be asked for, by name; imports nothing, for the command line's help."""
+"""Names of search methods; imports nothing, for the help of the command line."""
 
 from enum import StrEnum
 

@@ -39,18 +39,13 @@ class StepUnits:
     T: Array  # Shape (n, n). Its leading block is that of free motion.
     others: Array  # Units of the disturbances, then of the errors
 
-    @classmethod
-    def of(cls, T: Array, disturbances: Sequence[float], errors: int) -> StepUnits:
-        """Take units of disturbances, and ones of errors."""
-        return cls(T, np.array([*disturbances, *[1.0] * errors]))
-
     def rows(self, rows: Array, states: int) -> Array:
         """Return what rows over state, disturbances and errors are in these coordinates."""
         moved = rows[..., :states] @ self.T[:states, :states]
         return np.concatenate([moved, rows[..., states:] * self.others], axis=-1)
 
     def balanced(self, steps: Sequence[Step]) -> StepUnits:
-        """Choose units of errors: what they do to the state is as large as what it does to them."""
+        """Return units of errors in which gains from and to the state are equal."""
         count = max((len(step.errors) for step in steps), default=0)
         pushed, sizes = np.zeros(count), np.zeros(count)
         for step in steps:
@@ -64,7 +59,7 @@ class StepUnits:
 
 
 def _inequality(step: Step, own: StepUnits) -> Inequality:
-    """Return what a step asks of the form, with multipliers of all facts.
+    """Return the inequality of a step, with the forms of all facts.
 
     A disturbance with a weight has the fact that it is at most one.
     """
@@ -132,8 +127,8 @@ class FormSolution:
     """A solution in floating point."""
 
     Q: Array
-    multipliers: dict[str, float]  # Of all steps
-    last: float  # The level, or what is left to spare with the sign changed
+    multipliers: dict[str, float]  # Multipliers of all steps
+    last: float  # The level, or the negative margin
 
     def roundings(
         self, T: Array, scale: float = 1.0
@@ -162,8 +157,8 @@ class OneForm:
 
     order: int  # Entries of z that the form is of
     conditions: tuple[Inequality, ...]
-    stands: dict[str, str]  # For every multiplier, that of the step which stands for its own
-    scales: dict[str, float]  # Of the multipliers that are solved for
+    stands: dict[str, str]  # For each multiplier, its equal in the program
+    scales: dict[str, float]  # Scales of the multipliers in the program
 
     @classmethod
     def of(
@@ -234,7 +229,7 @@ class OneForm:
         if level is not None:
             program.add(one, [(last, -one)])
         reached = program.maximize(allowance)
-        # The last unknown is what is left to spare, or the level with its sign changed.
+        # The last unknown is the margin, or the negative level.
         sign = -1 if level is None else 1
         if reached is None or sign * reached.x[-1] <= 0:
             return None

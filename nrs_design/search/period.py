@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import chain, compress, groupby
+from itertools import chain, compress
 from math import ceil, exp, isinf, log, log2
 
 import numpy as np
@@ -25,13 +25,13 @@ Array = NDArray[np.float64]
 Signal = tuple[Cycle, Array]
 
 FEWEST_BITS = 8
-# About so many times are looked at to refine those of one cycle; work for each jump of each look.
+# Evaluations to refine the times of a cycle, and work of an evaluation for each jump.
 LOOKS = 600
 PER_LOOK = 4e-5
-# Share of what is left for words of single steps, or of stays on a grid.
+# Share of the rest of the budget for words of single steps, or of stays on a grid.
 WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
-# Lengths of a stay that are looked at; one of zero is none, and so long of the longest one instead.
+# Number of lengths of a stay; the shortest positive length, relative to the longest.
 LENGTHS, BRIEF = 5, 1e-6
 
 
@@ -141,15 +141,13 @@ def _short(time: float, bits: int) -> Fraction:
 
 
 def search_rounds(family: Family) -> Candidates[GrowingSequence]:
-    """Search for a word of steps that modes may take in turn."""
+    """Search for a growing sequence of scheduled steps."""
     system, clock = family.system, family.system.clock
     if clock is None:
         return NOTHING_GROWS
     graph = turns_graph(family, clock)
     for word, growth in best_words(graph, family.allowance.part(WORDS), 1.0):
-        runs = groupby(graph.sequence(word)[0], key=lambda step: step[0])
-        signal = tuple((name, sum((count for _, count in run), Fraction(0))) for name, run in runs)
-        yield from powers(system, signal, (), growth ** len(word))
+        yield from powers(system, *graph.sequence(word), growth ** len(word))
     return NOTHING_GROWS
 
 

@@ -1,10 +1,11 @@
-"""How high the degrees of forms may rise, and what their programs take.
+"""Degrees of forms, and costs of their programs.
 
 Both are known before anything is lifted.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import comb, factorial, prod
 
 import numpy as np
@@ -34,13 +35,27 @@ def highest_degree(variables: int) -> int:
     return max(fitting, default=1)
 
 
+def rising_degrees(variables: int, highest: float) -> Iterator[int]:
+    """Yield halves of degrees to try, up to a highest one.
+
+    Each degree takes about four times the one before, so all lower ones together take a part of
+    the cost of the last one.
+    """
+    last, d = min(highest_degree(variables), highest), 2
+    while d < last:
+        yield d
+        d += max(1, d // 3)
+    if last >= 2:
+        yield int(last)
+
+
 def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
     """Predict what a form of degree 2d in contact and free motion takes; say for what."""
     return family_cost(system, degree, len(system.free))
 
 
 def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cost, str]:
-    """Predict the same for all modes, and some of free motion."""
+    """Predict the cost of a form of degree 2d for all modes, and some of free motion."""
     n, modes = system.order, len(system.modes)
     (order, own, forms), (inner, _, flying) = (form_sizes(k, degree) for k in (n, n - 1))
     shared = own + 1
@@ -51,14 +66,14 @@ def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cos
 
 
 def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
-    """Return how many monomials there are, forms of them, and forms that vanish."""
+    """Return the numbers of monomials, of forms of them, and of forms that vanish."""
     order = comb(variables + degree - 1, degree)
     own = order * (order + 1) // 2
     return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)
 
 
 def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict what a form of degree 2d for each mode takes; say for what."""
+    """Predict the cost of a form of degree 2d for each mode, with its name."""
     order = max(mode.A.shape[0] for mode in system.modes)
     return graph_cost(order, degree, len(system.modes), _count_decreases(system))
 
@@ -79,15 +94,14 @@ def work_of_checks(system: SwitchedSystem, degree: int) -> float:
 
 
 def _count_decreases(system: SwitchedSystem) -> int:
+    """Return the number of inequalities of a form for each mode."""
     counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
     return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
 
 
 def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
-    if stay.longest is None:
-        return 1
-    if system.time is Time.CONTINUOUS:
-        return SAMPLES
+    if stay.longest is None or system.time is Time.CONTINUOUS:
+        return 1 if stay.longest is None else SAMPLES
     return int(stay.longest) - int(stay.shortest) + 1
 
 

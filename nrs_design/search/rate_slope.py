@@ -8,6 +8,7 @@ modes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite, log, sqrt
 
@@ -26,18 +27,19 @@ from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_s
 from nrs_design.search.ladder import Facts
 from nrs_design.work import Allowance
 
-RESOLUTION = 5e-4
-# A rate is bracketed no closer than this share of its distance from the one that is wanted.
+# Bracket of a rate, relative to its size; step of a difference, relative to the rate.
+RESOLUTION, DIFFERENCE = 5e-4, 1e-5
+# Resolution of a rate, relative to its distance from the required rate.
 COARSE = 0.03
-# There is more to the best rate than forms show beyond the one that they were asked for.
+# Next step of the rate, relative to the last gain.
 FURTHER = 1.5
 # Modes are made to decay at least as a contraction to this share.
 CALM = 0.999
-# How far below the best rate slopes are taken, as shares of it.
+# Distances below the best rate at which slopes are taken, relative to the rate.
 BELOW = (0.0, 1e-4, 1e-3, 1e-2)
 # Growth is looked at up to this many times the decay of the slowest mode.
 FASTEST_GROWTH = 64.0
-# Shares beside one that was the best nearby.
+# Shares relative to the best share of a system nearby.
 BESIDE = (0.6, 1.0, 1.6)
 
 
@@ -49,17 +51,14 @@ class RateSlope:
     _program: FormsProgram
     _dual: DualSolution
     _at: float  # As the program counts rates
-    _per_rate: float  # What the margin changes by for 1/s
+    _per_rate: float  # Change of the margin for 1/s more
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the rate of a system nearby is larger, in first order, 1/s."""
-        program, total = self._program, 0.0
-        changed = program.edges_at(system)
-        for k in self._dual.duals:
-            moved = _decrease(program, changed[k], self._dual, k, self._at)
-            own = _decrease(program, program.edges[k], self._dual, k, self._at)
-            total += float(np.sum(self._dual.duals[k] * (moved - own)))
-        return -total / self._per_rate
+        """Return the change of the rate for a system nearby, in first order, 1/s."""
+        edges = self._program.edges_at(system)
+        moved = _weighted(self._program, edges, self._dual, self._at)
+        own = _weighted(self._program, self._program.edges, self._dual, self._at)
+        return (own - moved) / self._per_rate
 
 
 def may_have_slope(system: SwitchedSystem) -> bool:
@@ -91,7 +90,7 @@ def rate_slope(
         best = _best(program, limit, guess, resolution, allowance, wanted)
         if best is None:
             return None
-        # Where the margin is nearly nil, its slope is that of noise.
+        # The slope of a vanishing margin is noise.
         for below in BELOW:
             at = _counted(best - below * max(abs(best), resolution), program)
             dual = program.solve_dual(at, allowance)
@@ -180,31 +179,25 @@ def _shown(program: FormsProgram, solution: Solution) -> float:
     return rate if program.time is Time.CONTINUOUS else (1 - rate) / _period(program)
 
 
-def _decrease(
-    program: FormsProgram, edge: Inequality, dual: DualSolution, k: int, at: float
-) -> NDArray[np.float64]:
-    """Return the inequality of an edge as the rows of the program state it."""
-    N = dual.solution.vanishing[k]
-    form = program.decrease(edge, dual.solution, N, at)
-    return form if edge.is_flow else program.factors(at)[k] * form
+def _weighted(
+    program: FormsProgram, edges: Sequence[Inequality], dual: DualSolution, at: float
+) -> float:
+    """Return the sum of ``trace(W F)`` of some edges, with F as the program states it."""
+    factors, total = program.factors(at), 0.0
+    for k, W in dual.duals.items():
+        edge, solution = edges[k], dual.solution
+        form = program.decrease(edge, solution, solution.vanishing[k], at)
+        total += float(np.sum(W * (form if edge.is_flow else factors[k] * form)))
+    return total
 
 
 def _per_rate(program: FormsProgram, dual: DualSolution, at: float) -> float:
-    """Return what 1/s more does to the margin."""
-    total = 0.0
-    for k, own in dual.duals.items():
-        edge = program.edges[k]
-        if edge.is_flow:
-            Q = dual.solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            changed = -2 * float(np.ldexp(1.0, program.unit)) * Q
-        else:
-            Q = dual.solution.forms[edge.after][np.ix_(edge.left, edge.left)]
-            weight = edge.weight(at, 1, program.time)
-            continuous = program.time is Time.CONTINUOUS
-            more = 2 * edge.lasts if continuous else 2 * edge.lasts * _period(program) / at
-            changed = -more * weight * edge.changed(Q)
-        total += float(np.sum(own * changed))
-    return total
+    """Return the change of the margin for 1/s more."""
+    step = DIFFERENCE * max(abs(at), RESOLUTION)
+    ends = (_weighted(program, program.edges, dual, at + side) for side in (-step, step))
+    lower, upper = ends
+    change = (upper - lower) / (2 * step)
+    return change if program.time is Time.CONTINUOUS else -_period(program) * change
 
 
 @dataclass(frozen=True)
@@ -212,13 +205,13 @@ class ForceSlope:
     """The least bound that is found, and how it changes with small changes of the modes."""
 
     level: float  # SI units of the output
-    share: float  # Of the disturbances; a guess for systems nearby
+    share: float  # Share of the disturbances; a guess for systems nearby
     _output: Output
     _frame: Frame  # Which stays for small changes
     _allowance: Allowance
 
     def change(self, system: SwitchedSystem) -> float:
-        """Return by how much the logarithm of the bound of a system nearby is larger."""
+        """Return the change of the logarithm of the bound for a system nearby."""
         with floats_in_silence():
             program = BoundProgram.around(system, system.channels, self._output, self._frame)
             found = program.solve(self.share, self._allowance)

@@ -1,4 +1,4 @@
-"""How a program is asked for rates, and what is claimed for its solutions (untrusted).
+"""Search for the rate of a program, and claims for its solutions (untrusted).
 
 Rates descend, and for each rate the digits grow. A wider gap below the best rate needs fewer
 digits, and the first candidate that passes the exact check is taken.
@@ -27,12 +27,12 @@ E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 BACK_OFFS = (0.99995, 0.9998, 0.9995, 0.999, 0.998, 0.996, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)
-# Where a check takes long: so many rates, and every so many bits.
+# Largest number of rates where a check takes long; bits of a rate.
 FEW_RATES = 3
 RATE_BITS = 16
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
-# How far above the largest position that was found another one is looked for, as a share of it.
+# Distance of the last position above the largest feasible one, relative to it.
 BEYOND = 2.0**-10
 # Few roundings with errors: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
@@ -71,7 +71,7 @@ def digits(fewest: int = BITS[0]) -> tuple[int, ...]:
 
 
 def round_rate(rate: float | Fraction, time: Time) -> Fraction:
-    """Round a rate to a short dyadic number on its safe side (slower decay)."""
+    """Round a rate to a short dyadic number of slower decay."""
     if time is Time.DISCRETE:
         return 1 - _round_down(1 - Fraction(rate))
     return _round_down(Fraction(rate))
@@ -133,7 +133,7 @@ class RateProgram(Protocol[S, E]):
         """Return a solution at a rate."""
 
     def own_rate(self, solution: S) -> float:
-        """Return the rate that a solution shows, perhaps a better one than was asked for."""
+        """Return the rate that a solution shows, perhaps better than the requested rate."""
 
     def roundings(
         self, solution: S, claim: Fraction, digits: Sequence[int], *, errors: bool = False
@@ -143,15 +143,15 @@ class RateProgram(Protocol[S, E]):
 
 @dataclass(frozen=True)
 class Rates:
-    """How rates are looked for: a program that takes long is asked rarely."""
+    """Settings of the search for rates; slow programs are solved rarely."""
 
-    share: float = 1.0  # Of the budget, for the largest rate
+    share: float = 1.0  # Share of the budget for the largest rate
     resolution: float = RESOLUTION
     smallest: float = SMALLEST
     nearest: float = BACK_OFFS[0]
     few: bool = False
     bits: Sequence[int] = field(default_factory=digits)
-    always: bool = False  # Look for the largest rate, whatever was asked for
+    always: bool = False  # Search for the largest rate even if it is not requested
     words: str = "found with the largest decay rate"
 
 
@@ -244,45 +244,25 @@ def bisect_position(
 ) -> float:
     """Bisect for the largest feasible position; zero if nothing above the smallest one is.
 
-    Feasible positions come first; there, it is told which position is shown as well, perhaps a
-    larger one. The largest is bracketed to a share of itself, `resolution`, or to the difference
-    `smallest`, whichever is reached first; it ends early when the work is used up. A solver may
-    fail below the largest, so it is looked once at what is just above.
+    Feasible positions come first. For a feasible position, `shown` returns the position that its
+    solution shows, perhaps a larger one; otherwise None. The largest is bracketed to a share of
+    itself, `resolution`, or to the difference `smallest`, whichever is reached first; the search
+    ends early when the work is used up. A solver may fail below the largest, so one position just
+    above is tried.
     """
-    failed: list[float] = []
-
-    def told(position: float) -> float | None:
-        """Keep the positions at which the solver fails."""
-        if (found := shown(position)) is None:
-            failed.append(position)
-        return found
-
-    low = _bisected(0.0, 1.0, told, resolution, smallest)
-    above = min(low * (1 + BEYOND), 1.0)
-    try:
-        found = told(above) if low else None
-    except NotAffordableError:
-        found = None
-    if found is None:
-        return low
-    low = max(above, min(found, 1.0))
-    high = min((position for position in failed if position > low), default=1.0)
-    return _bisected(low, high, told, resolution, smallest)
-
-
-def _bisected(
-    low: float,
-    high: float,
-    shown: Callable[[float], float | None],
-    resolution: float,
-    smallest: float,
-) -> float:
-    """Return the largest position that is found between two, of which the low one is feasible."""
-    while high - low > max(resolution * high, smallest):
-        middle = (low + high) / 2
+    low, high, failed, is_last = 0.0, 1.0, list[float](), False
+    while True:
+        position = (low + high) / 2
+        if high - low <= max(resolution * high, smallest):
+            if is_last or not low:
+                return low
+            position, is_last = min(low * (1 + BEYOND), 1.0), True
         try:
-            found = shown(middle)
+            found = shown(position)
         except NotAffordableError:
-            break
-        low, high = (low, middle) if found is None else (max(middle, min(found, 1.0)), high)
-    return low
+            return low
+        if found is None:
+            failed.append(position)
+        else:
+            low = max(position, min(found, 1.0))
+        high = min((one for one in failed if one > low), default=1.0)

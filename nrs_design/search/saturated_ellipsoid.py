@@ -19,16 +19,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.between import between
-from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import SaturatedEllipsoid
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.saturation import CutOff
 from nrs_design.proof.steps import multiplier_names
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
@@ -51,11 +49,11 @@ Array = NDArray[np.float64]
 H_DIGITS = 40
 # The slowest decay that counts, as a share of the fastest there is; what is rounded needs room.
 SLOWEST = {Time.CONTINUOUS: 1e-3, Time.DISCRETE: 0.02}
-# By how much a start stays below the largest one: nearer to it there is no decay to speak of.
+# Size of a start relative to the largest one, at which there is hardly any decay.
 BELOW = 0.99
 # A start just inside of a region leaves nothing for rounding.
 ENOUGH = 0.999
-# How far H is taken from what the signals are while nothing is cut off, the farthest first.
+# Distances of H from the unsaturated signals, the farthest first.
 WAYS = (1.0, 0.8, 0.5, 0.0)
 # Steps of a bisection of the rate, and shares of the largest one that are claimed.
 BISECTIONS = 8
@@ -74,7 +72,7 @@ class SaturatingLoop:
     # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
     # where it is.
     A: Array
-    free: int  # How many of them are free
+    free: int  # Number of free modes
     columns: Array  # Shape (k, s, n). What every signal does.
     rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
     starts: Array  # Shape (c, n). States at the size one.
@@ -86,7 +84,7 @@ class SaturatingLoop:
     def of(cls, system: SwitchedSystem, allowance: Allowance) -> SaturatingLoop:
         """Convert a system of which something saturates."""
         saturation = system.saturation
-        assert saturation is not None  # who asks has looked
+        assert saturation is not None  # only saturating systems are searched
         free = () if system.contact is None else system.contact.free
         limits = np.array([float(s.limit) for s in saturation.signals])
         A = to_floats([mode.A for mode in system.every_mode])
@@ -169,7 +167,7 @@ class SaturatingLoop:
             yield k, B
 
     def is_free(self, k: int) -> bool:
-        """Tell whether a mode is one of free motion."""
+        """Tell whether a mode is free motion."""
         return k >= len(self.A) - self.free
 
 
@@ -264,7 +262,7 @@ class _Held:
 
     H: Array
     T: Array
-    size: float  # Of the largest start
+    size: float  # Size of the largest start
 
 
 @dataclass(frozen=True)
@@ -275,8 +273,8 @@ class _Search:
     T: Array
     loop: SaturatingLoop
     limit: float  # The fastest rate there is
-    stands: tuple[int, ...]  # For each mode of the whole system, the one that stands for it
-    rounding: bool = False  # Whether what the arithmetic rounds is covered
+    stands: tuple[int, ...]  # Index of the equal of each mode of the whole system
+    rounding: bool = False  # Whether rounding errors are covered
 
     def rate(self, position: float) -> float:
         """Return the rate at a position from 0, mere stability, to 1."""
@@ -290,7 +288,7 @@ class _Search:
         return np.tile(limits, self.loop.held // len(limits))
 
     def rounded_rows(self, H: Array, way: float) -> Array:
-        """Return rows between what the signals are while nothing is cut off and others, rounded."""
+        """Return rounded rows between those of the unsaturated signals and others."""
         moved = self.loop.shared + way * (H - self.loop.shared)
         found = self.limits[:, None] * (moved @ np.linalg.inv(self.T))
         log2 = log2_of(found)
@@ -301,7 +299,7 @@ class _Search:
         rows = [[[Fraction(float(v)) for v in h] for h in H] for H in self.loop.by_mode(held.H)]
         system = between(self.system, rows, rounding=self.rounding)
         steps = plain_steps(system, rounding=self.rounding)
-        own = StepUnits.of(held.T, (), len(system.roundings) * self.rounding)
+        own = StepUnits(held.T, np.ones(len(system.roundings) * self.rounding))
         return OneForm.of(steps, own.balanced(steps))
 
     def solve(
@@ -384,9 +382,8 @@ def search_saturated(
     The start is the wanted one; without one, or where it is out of reach, nearly the largest. Where
     the arithmetic rounds, ellipsoids that cover that come before others.
     """
-    assert system.saturation is not None  # who asks has looked
-    kept, stands = _stand_ins(system)
-    lean = _lean(system, kept)
+    assert system.saturation is not None  # only saturating systems are searched
+    lean, stands = _without_twins(system)
     family, raw = Family.of(lean), SaturatingLoop.of(lean, allowance)
     slowest = SLOWEST[system.time]
     T = _coordinates(lean, family, rate_at(slowest, family.limit, system.time), allowance)
@@ -427,7 +424,7 @@ def _coordinates(
     T = np.ldexp(separating_coordinates(family), family.exponents[:, None])
     if not np.isfinite(T).all():
         return None
-    program = OneForm.of(plain_steps(system, rounding=False), StepUnits.of(T, (), 0))
+    program = OneForm.of(plain_steps(system, rounding=False), StepUnits(T, np.zeros(0)))
     one, basis = np.eye(program.order), program.basis
     within = [Constraint(0 * one, basis, 0 * one), Constraint(one, -basis)]
     found = program.solve(share_of(rate, system.time), within, allowance, 1.0)
@@ -444,45 +441,26 @@ def log2_of(H: Array) -> int:
     return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
 
 
-def _stand_ins(system: SwitchedSystem) -> tuple[list[int], tuple[int, ...]]:
-    """Return modes that floating point tells apart, and for each mode which of them stands for it.
+def _without_twins(system: SwitchedSystem) -> tuple[SwitchedSystem, tuple[int, ...]]:
+    """Return the system with only those modes that floating point tells apart.
 
-    Modes in contact and free, by their numbers.
+    With the number of the mode that stands for each mode of the whole system, in contact and free.
     """
-    kept: list[int] = []
-    stands: list[int] = []
-    first = 0
-    for modes in (system.modes, system.free):
-        if not modes:
-            continue
-        same = nearly_same(to_floats([mode.A for mode in modes]))
-        kept += [first + k for k in dict.fromkeys(same)]
-        stands += [kept.index(first + k) for k in same]
-        first += len(modes)
-    return kept, tuple(stands)
-
-
-def _lean(system: SwitchedSystem, kept: list[int]) -> SwitchedSystem:
-    """Leave out all modes but some, with what belongs to them."""
-    modes, free = system.modes, system.free
-    own = tuple(m for k, m in enumerate(modes) if k in kept)
-    flying = tuple(m for k, m in enumerate(free, len(modes)) if k in kept)
-    contact = None if system.contact is None else replace(system.contact, free=flying)
-
     assert system.saturation is not None
-    signals = tuple(replace(signal, **_parts(signal, kept)) for signal in system.saturation.signals)
-    return replace(
-        system,
-        modes=own,
-        contact=contact,
-        flights=None,
-        roundings=tuple(replace(item, **_parts(item, kept)) for item in system.roundings),
-        saturation=replace(system.saturation, signals=signals),
-        enclosures=(),
+    same = nearly_same(to_floats([mode.A for mode in system.modes]))
+    if system.free:
+        free = nearly_same(to_floats([mode.A for mode in system.free]))
+        same += [len(system.modes) + k for k in free]
+    kept = sorted({*same})
+    own = system.only({mode.name for k, mode in enumerate(system.every_mode) if k in kept})
+
+    def few(rows: tuple[RationalMatrix, ...]) -> tuple[RationalMatrix, ...]:
+        return tuple(rows[k] for k in kept) if rows else ()
+
+    signals = tuple(
+        replace(item, columns=few(item.columns), rows=few(item.rows), errors=few(item.errors))
+        for item in system.saturation.signals
     )
-
-
-def _parts(item: Rounding | CutOff, kept: list[int]) -> dict[str, Any]:
-    """Return what an item has for every mode, for some of them."""
-    parts = {part: getattr(item, part, ()) for part in ("columns", "rows", "errors")}
-    return {part: tuple(rows[k] for k in kept) for part, rows in parts.items() if rows}
+    saturation = replace(system.saturation, signals=signals)
+    lean = replace(own, flights=None, saturation=saturation, enclosures=())
+    return lean, tuple(map(kept.index, same))

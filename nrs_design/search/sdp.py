@@ -27,7 +27,7 @@ PER_ENTRY = 5e-8
 PER_STEP = 1e-5
 PER_BLOCK_ENTRY = 7.5e-8
 PER_PRODUCT = 3e-11
-# A prediction counts so many steps; the solver makes fewer or more, and ever at most the last.
+# Predicted number of steps of the solver, and largest number.
 STEPS = 15
 MOST_STEPS = 200
 # Bytes for each entry of the dense constraints (with the copies), and of the factors.
@@ -103,7 +103,7 @@ class Maximum:
     """What the solver returned, whatever its status."""
 
     x: Array  # Shape (N,). The unknowns.
-    duals: list[Array]  # How much a unit of each block adds to the margin
+    duals: list[Array]  # Change of the margin for a unit of each block
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +161,7 @@ class SemidefiniteProgram:
         ]
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
-        """Return what the solver returned, whatever its status; None if that is not finite.
+        """Return the solution, whatever its status; None if it is not finite.
 
         The steps that it made are charged.
         """
@@ -207,7 +207,7 @@ def packed_columns(forms: Array) -> Array:
 
 
 def packed_congruence(L: Array, R: Array) -> Array:
-    """Return what the packed entries of Q add to ``L Q R'``, of which the upper half counts."""
+    """Return the packed upper half of ``L Q R'`` for each packed entry of Q."""
     a, b = triangle(len(L))
     i, j = triangle(L.shape[1])
     both = L[a][:, i] * R[b][:, j] + L[a][:, j] * R[b][:, i]

@@ -4,88 +4,57 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from itertools import accumulate, repeat
-from math import exp, log
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import Edge
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, round_coordinates
+from nrs_design.search.branches import mean_forms
 from nrs_design.search.drawing import FormCoordinates
 
 Array = NDArray[np.float64]
 
-# The mean of all switches may grow: so much of it is kept, and so often it is applied.
-KEPT, SWEEPS = 0.9, 60
-# What is flatter than this, relative to the longest axis, is not made round.
-FLAT = 1e-9
-# Of each number of pieces in turn it is predicted whether they are enough.
+# Numbers of pieces that are tried in turn.
 PIECES = (1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096)
 # Predictions leave out what is rounded: this is left for it.
 SAFE = 1.02
 
 
 def round_stays(system: SwitchedSystem, leaving: Collection[str]) -> dict[str, FormCoordinates]:
-    """Return coordinates of each mode in which what a mean signal keeps of the state is round.
+    """Return coordinates of each mode in which the form of `mean_forms` is round.
 
     Modes that are left, are so after a stay in the middle of its range; others stay until they
     decay.
     """
-    edges = [(edge, _flow(system, edge, edge.source.name in leaving)) for edge in system.edges()]
-    counts = {mode.name: 0 for mode in system.modes}
-    for edge, _ in edges:
-        counts[edge.source.name] += 1
-    units = {mode.name: _unit(mode) for mode in system.modes}
-
-    def mean(forms: dict[str, Array]) -> dict[str, Array]:
-        found = {name: np.zeros_like(P) for name, P in forms.items()}
-        for edge, E in edges:
-            name = edge.source.name
-            found[name] += E.T @ forms[edge.target.name] @ E / counts[name]
-        return found
-
-    grown, growths = units, list[float]()
-    for _ in range(SWEEPS):
-        grown = mean(grown)
-        size = max(float(np.trace(P)) for P in grown.values())
-        if not 0 < size < np.inf:
-            break
-        grown = {name: P / size for name, P in grown.items()}
-        growths.append(log(size))
-    # In the mean, as modes that follow each other may grow and decay in turn.
-    growth = exp(sum(growths) / max(len(growths), 1))
-    kept, forms = min(1.0, KEPT / growth), units
-    for _ in range(SWEEPS):
-        forms = {name: units[name] + kept * P for name, P in mean(forms).items()}
-    return {name: _round(P) for name, P in forms.items()}
+    scales = {mode.name: balance(np.array([mode.A.floats()])) for mode in system.modes}
+    number, edges = {name: k for k, name in enumerate(scales)}, [*system.edges()]
+    # Maps of modes with fewer states are padded by zeros.
+    n = max(map(len, scales.values()))
+    maps = np.zeros((len(edges), n, n))
+    for k, edge in enumerate(edges):
+        before, after = scales[edge.source.name], scales[edge.target.name]
+        E = _flow(system, edge, edge.source.name in leaving)
+        maps[k, : len(after), : len(before)] = np.ldexp(E, before - after[:, None])
+    sources = np.array([number[edge.source.name] for edge in edges])
+    targets = np.array([number[edge.target.name] for edge in edges])
+    forms = mean_forms(maps, sources, targets, len(number))
+    return {
+        name: FormCoordinates(scale, round_coordinates(P[: len(scale), : len(scale)]))
+        for (name, scale), P in zip(scales.items(), forms, strict=True)
+    }
 
 
-def _unit(mode: Mode) -> Array:
-    """Return the square of the state in units in which the mode is balanced."""
-    exponents = balance(np.array([mode.A.floats()]))
-    return np.diag(np.ldexp(1.0, -2 * exponents))
-
-
-def _round(P: Array) -> FormCoordinates:
-    """Return coordinates in which a form is nearly that of the identity.
-
-    Its diagonal is in the exponents.
-    """
-    exponents = -np.rint(np.log2(np.diag(P)) / 2).astype(np.int64)
-    even = np.ldexp(P, exponents[:, None] + exponents)
-    return FormCoordinates(exponents, round_coordinates(even + FLAT * np.eye(len(P))))
-
-
-def _flow(system: SwitchedSystem, edge: Edge, left: bool) -> Array:
+def _flow(system: SwitchedSystem, edge: Edge, leaves: bool) -> Array:
+    """Return the map of the state over a stay and the switch after it."""
     from scipy.linalg import expm
 
     A, stay = np.array(edge.source.A.floats()), system.stays()[edge.source.name]
     time = float(stay.shortest)
-    if left and stay.longest is not None:
+    if leaves and stay.longest is not None:
         time = float(stay.shortest + stay.longest) / 2
     else:
         slowest = -float(np.linalg.eigvals(A).real.max())
@@ -118,7 +87,7 @@ def enough_pieces(system: SwitchedSystem, graph: FormsOnGraph) -> int | None:
 def _pieces_of(
     system: SwitchedSystem, edge: Edge, before: Array, after: Array, rate: float, first: int
 ) -> int | None:
-    """Return which number of pieces is enough for the stays before a switch, from one of them."""
+    """Return the index of a sufficient number of pieces before a switch, from a first index."""
     from scipy.linalg import expm
 
     stay, n = system.stays()[edge.source.name], len(before)

@@ -37,12 +37,6 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     return replace(system, modes=modes, channels=(), outputs=(), saturation=None, flights=flights)
 
 
-def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:
-    """Return the name of the merged mode that stands for a mode of a system, if there is one."""
-    given = next((mode for mode in system.modes if mode.name == name), None)
-    return next((mode.name for mode in merged.modes if given and mode.A == given.A), None)
-
-
 def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
     """Order the states into blocks such that no block is driven by an earlier one.
 
@@ -55,7 +49,7 @@ def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
         if pattern.all():
             return (tuple(range(n)),)
     reaches = reachable(pattern)
-    # States that reach each other are one block; its first state stands for it.
+    # A block of states that reach each other is named by its first state.
     first = np.argmax(reaches & reaches.T, axis=1)
     blocks = [tuple(int(i) for i in np.flatnonzero(first == k)) for k in sorted({*first})]
     drives = [[pattern[np.ix_(a, b)].any() for b in blocks] for a in blocks]
@@ -63,7 +57,7 @@ def triangular_blocks(system: SwitchedSystem) -> tuple[tuple[int, ...], ...]:
 
 
 def reachable(pattern: Pattern) -> Pattern:
-    """Return which state is driven by which in any number of steps, by squaring."""
+    """Return the transitive closure of a pattern, by squaring."""
     reaches = pattern | np.eye(len(pattern), dtype=bool)
     for _ in range(len(pattern).bit_length()):
         reaches = reaches @ reaches

@@ -29,19 +29,19 @@ from nrs_design.work import Allowance, Cost
 Array = NDArray[np.float64]
 
 NOTHING_GROWS = "no sequence of contact and flight that was tried grows and keeps its signs"
-# How many motions are followed, for how many steps, and how long sequences may get.
+# Number of motions, steps of each, and largest length of a sequence.
 MOTIONS, LENGTH, LONGEST = 192, 480, 160
-# Of the motions, those that keep to one mode in contact and one free, and those that are greedy.
+# Numbers of motions that keep to two modes, and of greedy motions.
 PAIRS, GREEDY = 96, 48
-# How often others choose at random.
+# Probability of a random choice of the others.
 SHARE = 0.1
-# When a direction has come back, and how many sequences are looked at closely.
+# Cosine of a direction that returns, and numbers of sequences that are examined and proposed.
 NEAR, LOOKS, PROPOSED = 0.9, 2000, 8
-# What is at rest in the air begins anew.
+# Size of a motion at rest in free space, which begins anew.
 AT_REST = 1e-9
 # Work of an entry of a matrix that is enclosed.
 PER_ENTRY = 4e-6
-# An eigenvalue is sought so near to the one of floating point, and enclosed with so many halvings.
+# Relative distance of an eigenvalue from floating point, and halvings to enclose it.
 AROUND, HALVINGS = 1e-7, 120
 
 
@@ -68,7 +68,7 @@ class _Loop:
     """The modes in floating point, where each may be in force, and the forces."""
 
     system: SwitchedSystem  # The exact one
-    names: tuple[str, ...]  # Of the modes that differ
+    names: tuple[str, ...]  # Names of the distinct modes
     matrices: Array  # Shape (m, n, n). Scaled.
     # touching, flying: shape (m,). Modes in which the environment acts, and those without it.
     touching: NDArray[np.bool_]
@@ -79,10 +79,12 @@ class _Loop:
 
     @classmethod
     def of(cls, family: Family) -> _Loop:
-        system, contact, flights = family.system, family.system.contact, family.system.flights
-        free = system.free
-        touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
-        flying = {m.name for m in free} if flights is None else {*flights.flying}
+        system, flights = family.system, family.system.flights
+        if flights is not None:
+            touching, flying, rows = {*flights.touching}, {*flights.flying}, flights.pulls
+        else:
+            touching, flying = ({m.name for m in part} for part in (system.modes, system.free))
+            rows = () if system.contact is None else system.contact.pulls
         every, clock = system.every_mode, system.clock
         of_clock = [0] * len(every) if clock is None else clock.kind_of(m.name for m in every)
         turn_of = dict(zip((mode.name for mode in every), of_clock, strict=True))
@@ -92,8 +94,6 @@ class _Loop:
             kinds.setdefault(kind, []).append(mode)
         modes = [pair for group in kinds.values() for pair in distinct_modes(group)]
         names = tuple(mode.name for mode, _ in modes)
-        rows = [] if contact is None else contact.pulls
-        rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
         turns = np.zeros((1, len(names)), dtype=np.int64)
         if clock is not None:
@@ -116,13 +116,13 @@ class _Loop:
         delta, forces = x[:, -1], x @ self.pulls.T
         touches = (delta > 0) & (forces > 0).all(axis=1)
         flies = (delta <= 0) | ((forces <= 0).all(axis=1) & bool(len(self.pulls)))
-        # Where some forces would pull and others push, either may be.
+        # Between pushing and pulling forces, contact and free motion are possible.
         unclear = ~(touches | flies)[:, None]
         felt = touches[:, None] & self.touching | flies[:, None] & self.flying
         return felt | unclear | ~(self.touching | self.flying)
 
     def sequences(self) -> Iterator[list[int]]:
-        """Yield what motions were in while they came back to their direction, larger; each once.
+        """Yield sequences of modes over which a motion returns to its direction, and is larger.
 
         What stays in one mode turns but little from step to step, and would crowd out the others.
         """
@@ -131,7 +131,7 @@ class _Loop:
         # A motion that misses deadlines may come back to a state of the rule at any step.
         round_ = len(self.turns) if clock is None or clock.is_round else 1
         seen: set[tuple[int, ...]] = set()
-        # How much larger, by the motion and the number of steps since.
+        # Growth, by the motion and the number of steps.
         for end in range(LENGTH, LENGTH // 2, -max(1, LENGTH // 8)):
             end -= end % round_
             lengths = np.arange(round_, min(LONGEST, end) + 1, round_)
@@ -236,7 +236,7 @@ def _once(sequence: list[int]) -> list[int]:
 def _bracket(
     system: SwitchedSystem, steps: Steps, value: float
 ) -> tuple[Fraction, Fraction] | None:
-    """Enclose an eigenvalue between two near numbers; None if it is not where it was seen."""
+    """Enclose an eigenvalue between two near numbers; None if there is none near the value."""
     limit = Fraction(system.time is Time.DISCRETE)
     low = max(Fraction(value * (1 - AROUND)), limit)
     high = Fraction(value * (1 + AROUND))

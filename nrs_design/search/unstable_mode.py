@@ -76,7 +76,7 @@ def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingS
 
 
 def find_unstable_corner(family: Family) -> str | None:
-    """Name a mode that is not stable, and need not be attained; None if there is none."""
+    """Return an unstable corner of an enclosure by name; None if there is none."""
     system = family.system
     corners = {name for names in system.enclosures for name in names}
     suspicious = (mode for mode in _suspicious(family) if mode.name in corners)

@@ -41,7 +41,7 @@ SLACK = 1e-9
 # Shares at which switching is looked at: the ends have no mixture rung of their own. Of several
 # parameters, all together or each at its own.
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
-# Of averages of modes: shares of two, how many pairs, and how many others.
+# Averages of modes: shares of two, number of pairs, and number of others.
 PAIR_SHARES, MAX_PAIRS, RANDOM_MIXTURES = 128, 300, 2000
 # Entries of the averages that are looked at together.
 CHUNK_ENTRIES = 2_000_000
@@ -56,14 +56,16 @@ def search_value(family: Family) -> Candidates[GrowingSequence]:
     if (count := _count(system)) is None:
         return ENCLOSED
     slack = SLACK * max(float(np.abs(matrices).max()), 1.0)
-    corners = _corners(system, matrices)
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    # Shape (sets, corners, n, n)
+    corners = matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
     least = COARSE_GRID if count == 1 else FEWEST
     fitting = int((EVALUATIONS / len(corners)) ** (1 / count))
     grid = np.linspace(0, 1, max(least, min(GRID, fitting)))
-    family.allowance.take(
-        _cost(len(corners), len(grid) ** count, corners.shape[-1], count),
-        f"looking at {len(grid) ** count} values",
-    )
+    values = len(grid) ** count
+    looks = len(corners) * values + PEAKS * CLOSELY * count
+    work = looks * (PER_MATRIX + PER_PRODUCT * corners.shape[-1] ** 3)
+    family.allowance.take(Cost(work), f"looking at {values} values")
     found = False
     for k, start in _peaks(corners, grid, count, system.time):
         shares, growth = _refined(corners[k], start, float(grid[1]), system.time)
@@ -85,7 +87,7 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
         return "not tried: that takes two modes at each value, and no resets"
     if (count := _count(system)) is None:
         return ENCLOSED
-    # There are many values, and the periods of each could take all that is left.
+    # The periods of each value could take the whole budget.
     allowance = family.allowance.part(0.5)
     for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
         at_shares = Family.of(system_at(system, shares), allowance)
@@ -96,15 +98,10 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
 
 
 def _count(system: SwitchedSystem) -> int | None:
-    """Return how many constant parameters there are; None if their corners are enclosures."""
+    """Return the number of constant parameters; None if their corners are enclosures."""
     count = len(system.switching.fixed_ends[0]).bit_length() - 1
     odd = find_odd_shares(system.switching, (Fraction(0),) * count)
     return count if odd is None else None
-
-
-def _cost(sets: int, values: int, order: int, count: int) -> Cost:
-    """Predict what looking at all modes takes, at a grid of values and closely at the peaks."""
-    return Cost((sets * values + PEAKS * CLOSELY * count) * (PER_MATRIX + PER_PRODUCT * order**3))
 
 
 def _at(
@@ -113,12 +110,6 @@ def _at(
     """Make what is found about the system at a value evidence about the parameters."""
     for candidate in candidates:
         yield Candidate(replace(candidate.evidence, shares=shares))
-
-
-def _corners(system: SwitchedSystem, matrices: Array) -> Array:
-    """Return the modes of every set, shape (sets, corners, n, n)."""
-    index = {mode.name: k for k, mode in enumerate(system.modes)}
-    return matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
 
 
 def _growth(corners: Array, shares: Array, time: Time) -> Array:

@@ -25,8 +25,13 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
-from nrs_design.search.gradient import GradientResult, find_by_gradient
-from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
+from nrs_design.search.gradient import (
+    Coordinates,
+    Gradient,
+    GradientResult,
+    Order,
+    find_by_gradient,
+)
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Number, Recomputed, format_number
 
@@ -167,13 +172,13 @@ def run(
     radius: float = RADIUS,
     order: Order = Order.ROUND_ROBIN,
     updates: int = UPDATES,
-    start: str | None = None,
+    start: int = 0,
 ) -> GradientResult:
-    """Run the iteration once; for what is given see `Gradient`."""
-    way = Gradient(
+    """Run the iteration once with the settings of `Gradient`."""
+    settings = Gradient(
         radius=radius, start=start, order=order, coordinates=coordinates, max_updates=updates
     )
-    return find_by_gradient(Family.of(system, gradient=way))
+    return find_by_gradient(Family.of(system), settings)
 
 
 def _result(system: SwitchedSystem, coordinates: Coordinates, *, ends: bool) -> Recomputed:

@@ -12,7 +12,7 @@ from nrs_design.errors import DesignError
 from tests.support import ROOT, SOFT_TISSUE
 
 # Settings and parts of results, beside what a verb returns.
-PARTS = {"AuditCheck", "Counterexample", "FittedRange", "Gradient", "Study"}
+PARTS = {"AuditCheck", "Counterexample", "FittedRange", "Study"}
 RESULTS = {name for name in nrs.__all__ if inspect.isclass(getattr(api, name))} - PARTS
 DATA = ROOT / "specs/data"
 

@@ -6,13 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.loop.assemble import assemble_from_text
-from nrs_design.proof.constant import (
-    find_odd_shares,
-    name_between,
-    system_at,
-    value_at,
-    value_text,
-)
+from nrs_design.proof.constant import find_odd_shares, name_between, system_at, value_at, value_text
 from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from tests.proof.systems import PAIR, family, hidden_value

@@ -10,11 +10,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation
-from tests.proof.systems import (
-    family,
-    matrix,
-    pushed_away,
-)
+from tests.proof.systems import family, matrix, pushed_away
 
 WHAT = pushed_away().saturation
 NEITHER = "no signal saturates, or more than 4 do"

@@ -3,6 +3,8 @@
 The verdict may be inconclusive where numbers are extreme. It may never be wrong.
 """
 
+import subprocess
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from itertools import count, product
@@ -660,3 +662,20 @@ def test_evidence_that_does_not_hold_for_all_modes_is_found_out(monkeypatch):
     assert certify(ROUND, Method.LMI).verdict is Verdict.PROVED
     with pytest.raises(InternalError, match="does not hold"):
         certify(twice, Method.LMI)
+
+
+@pytest.mark.parametrize(
+    "module",
+    ["search.certification", "search.margin", "pipeline", "api", "gating.run", "models.plant"],
+)
+def test_nouns_are_imported_without_numpy(module):
+    code = f"import sys, nrs_design.{module}; print('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_the_deciding_statement_is_the_evidence():
+    proved = certify(dayawansa_martin(5), Method.LMI, Limits(optimize_rate=False))
+    assert proved.evidence is proved.statements[0]
+    nothing = certify(dayawansa_martin(6), Method.LMI, Limits(optimize_rate=False))
+    assert (nothing.evidence, nothing.statements) == (None, ())

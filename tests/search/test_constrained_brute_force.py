@@ -21,7 +21,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.misses import MissesSpec
 from tests.proof.systems import family
-from tests.search.test_pieces import timed
+from tests.search.test_stays import timed
 
 LIMITS = Limits(max_degree=4, budget=3.0, optimize_rate=False)
 LONGEST, FEW = 7, 12

@@ -7,20 +7,27 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock, Reset, Switching
 from nrs_design.search.acceptance import first_accepted
+from nrs_design.search.certify import certify
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.period import search_period
+from nrs_design.search.graph import Graph
+from nrs_design.search.period import search_period, search_rounds, stay_words
+from nrs_design.work import Allowance
+from tests.literature.timed_loop import timed
 from tests.proof.systems import (
+    bouncing_in_steps,
     branicky,
     dayawansa_martin,
+    doubled_in_turns,
     family,
     geromel_colaneri,
     golden,
     oscillator,
 )
 from tests.proof.truth import holds
-from tests.search.support import found
+from tests.search.support import found, outcome
 
 
 def search(system):
@@ -80,3 +87,55 @@ def test_resets_that_grow_a_little_need_quick_switching():
     evidence = search(system)
     assert evidence is not None
     assert evidence.find_fault(system) is None
+
+
+def test_a_round_that_grows():
+    evidence = found(search_rounds, doubled_in_turns(3))
+    assert evidence.doublings is not None
+    assert [(name, int(count)) for name, count in evidence.steps] == [("m0", 1), ("m1", 2)]
+    assert certify(doubled_in_turns(3)).evidence == evidence
+
+
+def test_two_rounds_that_grow_in_turn():
+    """Either alone halves all, and one after the other they grow by two and a quarter."""
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    rest = [[1, 0], [0, 1]]
+    system = replace(family(*pair, rest, time=Time.DISCRETE), clock=Clock(3, ("m0", "m1")))
+    evidence = found(search_rounds, system)
+    assert {name for name, _ in evidence.steps} == {"m0", "m1", "m2"}
+
+
+def test_what_decays_is_not_refuted():
+    assert outcome(search_rounds, doubled_in_turns(4))[0] is None
+    assert outcome(search_rounds, bouncing_in_steps())[0] is None
+
+
+MOTION = ([[0, 1], [0, 0]], [[0], ["126.7"]])
+GAIN = [[-50, "-11.8"]]
+
+
+def words(period, delay, system=None):
+    system = system or timed(MOTION, GAIN, period, delay)
+    graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
+    return graph, [*stay_words(graph, Allowance(0.5))]
+
+
+def test_delays_in_turn():
+    graph, found = words(("1e-3", "1e-3"), (0, "0.6e-3"))
+    cycle, times = found[-1]
+    assert graph.growth(cycle, times) > 0
+    # It begins with the first mode, and takes both ends of the delay.
+    assert [graph.matrices.shape[0], *graph.modes(cycle)[:2]] == [2, 0, 1]
+    assert times[::2].min() == pytest.approx(0.6e-9)
+    assert times[::2].max() == pytest.approx(0.6e-3)
+    assert (graph.admissible(cycle, times) == times).all()
+
+
+def test_the_best_word_where_none_grows():
+    graph, found = words(("1e-3", "1e-3"), (0, "0.3e-3"))
+    ((cycle, times),) = found
+    assert graph.growth(cycle, times) < 0
+
+
+def test_no_words_where_nothing_varies():
+    assert words(("1e-3", "1e-3"), ("0.6e-3", "0.6e-3"))[1] == []

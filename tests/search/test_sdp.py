@@ -5,6 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.exact import (
+    add,
+    congruence,
+    is_positive_definite,
+    is_positive_semidefinite,
+    is_too_large,
+)
 from nrs_design.search.sdp import (
     STEPS,
     SemidefiniteProgram,
@@ -15,6 +22,8 @@ from nrs_design.search.sdp import (
     unpack,
 )
 from nrs_design.work import Allowance
+from tests.proof.truth import determinant, is_definite
+from tests.support import ends_soon
 
 M = np.array([[3.0, 1.0, 0.0], [1.0, 2.0, -1.0], [0.0, -1.0, 4.0]])
 
@@ -87,3 +96,98 @@ def test_a_dual_is_that_of_its_block():
     (dual,) = program().maximize(Allowance()).duals
     _, vectors = np.linalg.eigh(M)
     assert dual == pytest.approx(np.outer(vectors[:, 0], vectors[:, 0]), abs=1e-5)
+
+
+@st.composite
+def factors(draw):
+    """Draw an integer matrix with any number of rows and columns."""
+    rows, columns = draw(st.integers(1, 5)), draw(st.integers(1, 5))
+    return [[draw(st.integers(-20, 20)) for _ in range(columns)] for _ in range(rows)]
+
+
+@st.composite
+def symmetric(draw):
+    n = draw(st.integers(1, 4))
+    upper = {(i, j): draw(st.integers(-3, 3)) for i in range(n) for j in range(i, n)}
+    return [[upper[min(i, j), max(i, j)] for j in range(n)] for i in range(n)]
+
+
+def identity(n):
+    return [[int(i == j) for j in range(n)] for i in range(n)]
+
+
+@pytest.mark.parametrize(
+    ("M", "semidefinite"),
+    [
+        ([[0]], True),
+        ([[-1]], False),
+        ([[0, 0], [0, 0]], True),
+        ([[0, 1], [1, 0]], False),
+        ([[0, 1], [1, 5]], False),
+        ([[1, 1], [1, 1]], True),
+        ([[1, 2], [2, 3]], False),
+        # Leading principal minors are 1, 0, 0: Sylvester's criterion would not notice the -1.
+        ([[1, 1, 1], [1, 1, 1], [1, 1, 0]], False),
+        ([[0, 0, 0], [0, 1, 0], [0, 0, -1]], False),
+        ([[4, 2, 6], [2, 1, 3], [6, 3, 9]], True),
+    ],
+)
+def test_matrices_that_can_be_decided_by_eye(M, semidefinite):
+    assert is_positive_semidefinite(M) is semidefinite
+
+
+@given(factors())
+def test_squares_are_semidefinite_and_definite_iff_of_full_rank(L):
+    M = congruence(L, identity(len(L)))
+    assert is_positive_semidefinite(M)
+    assert is_positive_definite(M) is (determinant(M) > 0)
+
+
+@given(factors(), st.integers(0, 4))
+def test_a_singular_square_less_anything_is_not_semidefinite(L, index):
+    # A zero row and column, except for a negative corner.
+    M = congruence([[*row, 0] for row in L], identity(len(L)))
+    M[-1][-1] = -1 - index
+    assert not is_positive_semidefinite(M)
+
+
+@given(symmetric())
+def test_agrees_with_all_principal_minors(M):
+    assert is_positive_semidefinite(M) is is_definite(M, strictly=False)
+
+
+@given(symmetric())
+def test_agrees_with_eigenvalues_away_from_the_boundary(M):
+    smallest = np.linalg.eigvalsh(np.array(M, dtype=float)).min()
+    if abs(smallest) > 1e-6:
+        assert is_positive_semidefinite(M) is bool(smallest > 0)
+
+
+@given(factors())
+def test_congruence_and_add_as_numpy_has_them(L):
+    n = len(L)
+    Q = [[(i + 2) * (j + 3) for j in range(n)] for i in range(n)]
+    expected = np.array(L).T @ np.array(Q) @ np.array(L)
+    assert congruence(L, Q) == expected.tolist()
+    assert add(congruence(L, Q), congruence(L, Q), -3) == (-2 * expected).tolist()
+
+
+@pytest.mark.parametrize("M", [[], [[1, 2], [3, 4]]])
+def test_what_is_not_symmetric_is_an_error(M):
+    with pytest.raises(ValueError, match="symmetric"):
+        is_positive_semidefinite(M)
+
+
+def test_numbers_stay_small_over_the_whole_elimination():
+    n = 24
+    M = congruence([[(i * j) % 17 - 8 for j in range(n)] for i in range(n)], identity(n))
+    with ends_soon():
+        assert is_positive_semidefinite(M)
+
+
+def test_only_what_would_take_minutes_is_too_large():
+    assert not is_too_large([[2**300] * 64 for _ in range(64)])
+    assert not is_too_large([[10**4299] * 8 for _ in range(8)])
+    assert is_too_large([[2**1000] * 64 for _ in range(64)])
+    assert is_too_large([[1] * 1000 for _ in range(1000)])
+    assert not is_too_large([])

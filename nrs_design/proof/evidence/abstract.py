@@ -1,4 +1,4 @@
-"""What every kind of evidence can do: be checked, be confirmed, be said in words, be stored."""
+"""Abstract evidence: its check, its words, and its fields in a certificate."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ GROWN_THROUGHOUT = (
     "No corner of an enclosure need be attained: the growth is that of all maps between its "
     "corners."
 )
-# The same in a few words, beside a verdict that leaves the loss of contact open.
+# Scope in a few words, beside a verdict that leaves the loss of contact open.
 IN_KEPT_CONTACT = "in kept contact"
 AT_ANY_DEFLECTION = "where contact is lost and made at any deflection"
 
 
-# What a certificate says of a statement beside its numbers.
+# Fields of a statement beside its numbers.
 _OF_A_STATEMENT = frozenset({"kind", "block"})
 
 
@@ -49,7 +49,7 @@ class Shows(StrEnum):
 
     @property
     def is_good(self) -> bool:
-        """Whether it must hold of every motion, not of one that grows."""
+        """Whether the conclusion is about every motion, not about one that grows."""
         goods = (Shows.STABILITY, Shows.BOUND, Shows.REGION)
         return self in goods
 
@@ -77,7 +77,7 @@ class AbstractEvidence(ABC):
     @property
     @abstractmethod
     def shows(self) -> Shows:
-        """What follows if it holds."""
+        """Conclusion of the evidence."""
 
     @property
     def allows_unequal_modes(self) -> bool:
@@ -91,12 +91,12 @@ class AbstractEvidence(ABC):
 
     @property
     def attains_rate(self) -> bool:
-        """Whether it holds at the proved rate itself, not only at every slower one."""
+        """Whether the claim holds at the proved rate itself, not only at slower rates."""
         return False
 
     @property
     def covers_mixtures(self) -> bool:
-        """Whether what is shown of the modes is shown of their convex combinations too."""
+        """Whether the conclusion covers convex combinations of the modes."""
         return False
 
     @property
@@ -109,17 +109,17 @@ class AbstractEvidence(ABC):
 
     @property
     def covers_clock(self) -> bool:
-        """Whether it is about modes that take turns, where the system says so."""
+        """Whether the conclusion covers scheduled modes."""
         return False
 
     @property
     def is_common_quadratic(self) -> bool:
-        """Whether it holds a common quadratic function, or one for every diagonal block."""
+        """Whether there is a common quadratic function, or one for every diagonal block."""
         return False
 
     @property
     def covers_rounding(self) -> bool:
-        """Whether it holds for the roundings of the system too."""
+        """Whether the conclusion covers the rounding errors of the system."""
         return False
 
     @property
@@ -129,7 +129,7 @@ class AbstractEvidence(ABC):
 
     @property
     def names_unstable_mode(self) -> bool:
-        """Whether it shows that some mode is not stable by itself."""
+        """Whether the evidence names a mode that is not stable."""
         return False
 
     @property

@@ -10,14 +10,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
-from tests.proof.systems import (
-    companion,
-    family,
-    genuine,
-    matrix,
-    oscillator,
-    shears,
-)
+from tests.proof.systems import companion, family, genuine, matrix, oscillator, shears
 from tests.proof.truth import holds
 
 KINDS = ("constants-quadratic", "constants-quadratic, continuous")

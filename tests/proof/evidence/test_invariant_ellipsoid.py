@@ -15,22 +15,8 @@ from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from tests.proof.graphs import common_quadratic
-from tests.proof.systems import (
-    Entry,
-    bouncing,
-    bouncing_in_steps,
-    crowded,
-    family,
-    matrix,
-    pushed,
-)
-from tests.proof.truth import (
-    combine,
-    inequality,
-    is_in_other_units,
-    is_positive_multiple,
-    moves,
-)
+from tests.proof.systems import Entry, bouncing, bouncing_in_steps, crowded, family, matrix, pushed
+from tests.proof.truth import combine, inequality, is_in_other_units, is_positive_multiple, moves
 
 
 def pushing(Q, log2, share, level, *multipliers):

@@ -12,13 +12,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
 from tests.proof.rows import made
-from tests.proof.systems import (
-    bouncing,
-    bouncing_in_steps,
-    bouncing_in_turns,
-    family,
-    matrix,
-)
+from tests.proof.systems import bouncing, bouncing_in_steps, bouncing_in_turns, family, matrix
 from tests.tables import rows
 
 HALF = Fraction(1, 2)

@@ -23,8 +23,8 @@ from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.cli.sweep_point import Job
-    from nrs_design.sweeps.answers import PointAnswer
-    from nrs_design.sweeps.table import Row
+    from nrs_design.pipeline.sweep_answers import PointAnswer
+    from nrs_design.pipeline.sweep_table import Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
 SWEPT = (
@@ -108,8 +108,8 @@ def sweep(
     """
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
-    from nrs_design.sweeps.grid import read_grid
-    from nrs_design.sweeps.table import chosen
+    from nrs_design.pipeline.sweep_grid import read_grid
+    from nrs_design.pipeline.sweep_table import chosen
 
     if table is not None:
         check_place(table, SWEEP)
@@ -157,8 +157,8 @@ def _check_options(job: Job) -> None:
 def _points(job: Job, jobs: int, file: Path | None) -> list[PointAnswer]:
     """Compute what is not there, and return all points in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
+    from nrs_design.pipeline.sweep_answers import add_answer, read_answers
     from nrs_design.processes import map_in_processes
-    from nrs_design.sweeps.answers import add_answer, read_answers
 
     there = {} if file is None else read_answers(file)
     points = [(values, there.get(values)) for values in job.grid.points]
@@ -186,7 +186,7 @@ class _Swept:
 
     @classmethod
     def of(cls, job: Job, points: Sequence[PointAnswer]) -> Self:
-        from nrs_design.sweeps.table import flat
+        from nrs_design.pipeline.sweep_table import flat
 
         return cls(job, points, [dict(flat(point.result or {})) for point in points])
 
@@ -212,7 +212,7 @@ class _Swept:
 
     def table(self) -> str:
         """Return all facts as CSV: a row for each point, a column for each number or word."""
-        from nrs_design.sweeps.table import facts_in
+        from nrs_design.pipeline.sweep_table import facts_in
 
         text, names = io.StringIO(), facts_in(self.rows)
         writer = csv.writer(text, lineterminator="\n")
@@ -225,7 +225,7 @@ class _Swept:
 
     def show(self, wanted: list[str] | None) -> None:
         """Print what was set, how it ended, and some facts; by default those that differ."""
-        from nrs_design.sweeps.table import cell_text, telling
+        from nrs_design.pipeline.sweep_table import cell_text, telling
 
         # How it ended has a column of its own.
         names = wanted or [name for name in telling(self.rows) if name != "verdict"]

@@ -22,18 +22,18 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary
 from nrs_design.cli.printing import taking_json
 from nrs_design.errors import CertificateError, ClockError, NrsDesignError
+from nrs_design.pipeline.sweep_answers import PointAnswer, is_shown
+from nrs_design.pipeline.sweep_grid import Grid
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.document import Data, hash_meaning
 from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
-from nrs_design.sweeps.answers import PointAnswer, is_shown
-from nrs_design.sweeps.grid import Grid
 
 CERTIFYING = ("certify-switching",)
 # What no two runs have in common; what is said of other specs, which no certificate here shows; and
 # advice about the file, which is not what the point is about.
-LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps", "rho"})
+LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps"})
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,15 @@ those at its corners, the last parameter turning fastest. Polynomials are those 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import prod
 from typing import Any, NamedTuple, Self
 
-from nrs_design.design.largest_ratio import MOST, LargestRatio, bernstein, largest_ratio
+from nrs_design.design.largest_ratio import bernstein, bound_ratio
 from nrs_design.errors import InternalError
+from nrs_design.loop.cut_loop import ContinuousAxis, Place
 from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
@@ -24,6 +26,8 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 Polynomial = Any  # A `flint.fmpq_poly`
 Square = Callable[..., Polynomial]  # Of polynomials: another one, of second degree in them
+# Of parameters: numerator and denominator of a response, or a characteristic polynomial alone.
+Response = Callable[[Mapping[str, Fraction]], tuple[Polynomial, ...]]
 
 
 class FrequencyPiece(NamedTuple):
@@ -39,18 +43,7 @@ def everywhere(middle: Fraction = Fraction(100)) -> tuple[FrequencyPiece, Freque
     return FrequencyPiece(ZERO, middle), FrequencyPiece(ZERO, 1 / middle, inverse=True)
 
 
-class Quotient(NamedTuple):
-    """A response at fixed parameters, as polynomials in s."""
-
-    above: Polynomial
-    below: Polynomial
-    poles: Polynomial = 0  # Whose roots are the poles of what is closed, if that is asked
-
-
-Response = Callable[[Mapping[str, Fraction]], Quotient]
-
-
-def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
+def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polynomial, ...]]:
     """Return a response at the corners of a box, of which it is a mean at a point inside."""
     ends = [*product((0, 1), repeat=len(ranges))]
     corners = [
@@ -72,16 +65,16 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
     return corners
 
 
-def is_stable_over(at: Response, ranges: Mapping[str, Interval], most: int = MOST) -> bool:
-    """Tell whether the poles of a response are shown to be on the left in a whole box.
+def is_stable_over(poles: Response, ranges: Mapping[str, Interval]) -> bool:
+    """Tell whether the roots of a polynomial are shown to be on the left in a whole box.
 
-    At most so many Bernstein coefficients are looked at. Where none of the polynomials has a root
-    on the imaginary axis, nor at infinity, all have as many on the left as those at the corners.
+    Where none of the polynomials has a root on the imaginary axis, nor at infinity, all have as
+    many on the left as those at the corners.
     """
-    poles = [corner.poles for corner in corners_in(at, ranges)]
-    if len({p.degree() for p in poles}) > 1 or not all(map(_is_hurwitz, poles)):
+    corners = corners_in(poles, ranges)
+    if len({P.degree() for (P,) in corners}) > 1 or not all(_is_hurwitz(P) for (P,) in corners):
         return False
-    return Squares([(p,) for p in poles]).vanish_nowhere(everywhere(), most)
+    return Squares(corners).vanish_nowhere(everywhere())
 
 
 def _is_hurwitz(P: Polynomial) -> bool:
@@ -113,25 +106,27 @@ class Squares:
         """Return the square of a response over a box."""
         corners = corners_in(at, ranges)
         # Powers of s that all polynomials have cancel.
-        rest = min(zeros_at_rest(p) for corner in corners for p in corner[:2])
+        rest = min(zeros_at_rest(p) for corner in corners for p in corner)
         above, below = ([(corner[i].right_shift(rest),) for corner in corners] for i in (0, 1))
         return cls(below, above)
 
-    def largest(self, piece: FrequencyPiece, **search: Any) -> LargestRatio:
-        """Bound the largest quotient over the box and a piece of the frequencies."""
+    def bound(self, piece: FrequencyPiece, limit: Fraction | None = None) -> Fraction | None:
+        """Return what the quotient is nowhere above in the box and a piece of the frequencies.
+
+        The search ends below the limit, if there is one; None where nothing is shown.
+        """
         sides = [self._between(grid, piece) for grid in self._grids]
         below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))
-        return largest_ratio(above, below, (3,) * self._parameters + (self._size,), **search)
+        return bound_ratio(above, below, (3,) * self._parameters + (self._size,), limit)
 
-    def stay_below(self, limit: Fraction, pieces: Sequence[FrequencyPiece], most: int) -> bool:
+    def stay_below(self, limit: Fraction, pieces: Sequence[FrequencyPiece]) -> bool:
         """Tell whether the quotient is shown to be nowhere above a limit."""
-        found = (self.largest(p, limit=limit, nearly=None, most=most).above for p in pieces)
-        return all(above is not None and above <= limit for above in found)
+        found = (self.bound(piece, limit) for piece in pieces)
+        return all(bound is not None and bound <= limit for bound in found)
 
-    def vanish_nowhere(self, pieces: Sequence[FrequencyPiece], most: int) -> bool:
+    def vanish_nowhere(self, pieces: Sequence[FrequencyPiece]) -> bool:
         """Tell whether the squares, which nothing is above, are shown to be nowhere zero."""
-        found = (self.largest(piece, nearly=None, most=most) for piece in pieces)
-        return all(one.above is not None for one in found)
+        return all(self.bound(piece) is not None for piece in pieces)
 
     def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
@@ -199,3 +194,13 @@ def as_fmpq(number: Fraction) -> Any:
     from flint import fmpq
 
     return fmpq(number.numerator, number.denominator)
+
+
+def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
+    """Return the motor at parameters, and what makes polynomials affine in all of them.
+
+    Values are by name, ``Km`` or ``tau``; those that are not given are nominal.
+    """
+    nominal = axis.places[0].motor
+    gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
+    return Place(replace(nominal, gain=gain, time_constant=tau)), as_fmpq(tau)

@@ -35,11 +35,6 @@ COST_MEANING = (
     "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "
     "without a load of the motor; gains are chosen by it."
 )
-RESPONSE_MEANING = (
-    "Transparency and accuracy: proved or refuted over the whole band and all values in the "
-    "ranges, each of them constant, of the linear loop with the gains that ship, in continuous "
-    "time: without friction, rounding and saturation."
-)
 
 
 def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:

@@ -9,10 +9,10 @@ isolated rigorously, without a grid. With a strictly proper motion loop of relat
 one and no load, Y has relative degree two with an inertia, so it is never passive at all
 frequencies (thesis 7): what counts is the band.
 
-Ranges: times Mt (or Bt without inertia) and the time constant, N and D are affine in each of Km,
-tau, Mt, Bt and Kt, so the polynomial is of second degree at most in each. Anywhere in the box it is
-a mean of its Bernstein coefficients: where all of these are positive, so is it. Each parameter is
-unknown but constant; that is what a frequency is about.
+Ranges: times the time constant, N and D are affine in each of Km and tau, so the polynomial is of
+second degree at most in each. Anywhere in the box it is a mean of its Bernstein coefficients: where
+all of these are positive, so is it. Each parameter is unknown but constant; that is what a
+frequency is about.
 """
 
 from __future__ import annotations
@@ -21,19 +21,24 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from math import isqrt
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
+    ONE,
     ZERO,
     Polynomial,
+    Response,
     as_fmpq,
     corners_in,
+    motor_at,
+    polynomial,
     real_product,
     squared_over,
     zeros_at_rest,
 )
-from nrs_design.design.displayed_response import impedance_at, root_below
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
@@ -64,7 +69,7 @@ def passive_band(
 ) -> PassiveBand:
     """Find the frequency up to which the displayed admittance is passive, and one where it is not.
 
-    The law has a positive Bt. Ranges are those of ``Mt``, ``Bt``, ``Kt``, ``Km``, ``tau``, if any.
+    The law has a positive Bt. Ranges are those of ``Km`` and ``tau``, if any.
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(ZERO, None)
@@ -88,8 +93,22 @@ def real_parts(
 
     They are the Bernstein coefficients over the box: at its corners, the values there.
     """
-    corners = [corner[:2] for corner in corners_in(impedance_at(axis, law), ranges)]
+    corners = corners_in(impedance_at(axis, law), ranges)
     return [without_zeros(P) for P in squared_over(corners, real_product)]
+
+
+def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
+    """Return D and N as a function of the parameters."""
+
+    def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+        place, factor = motor_at(axis, values)
+        free, damped = (
+            factor * polynomial(*axis.cut(law, KelvinVoigt(ZERO, b), place).closed)
+            for b in (ZERO, ONE)
+        )
+        return free, damped - free
+
+    return at
 
 
 def without_zeros(P: Polynomial) -> Polynomial:
@@ -118,3 +137,8 @@ def _negative_beyond(
             return root
         step *= 2
     return None
+
+
+def root_below(x: Fraction, digits: int = 6) -> Fraction:
+    """Return a number of so many decimals whose square is not above x."""
+    return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)

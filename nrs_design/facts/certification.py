@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification
     from nrs_design.search.margin import Bracket, MarginBrackets
     from nrs_design.spec import Spec
@@ -105,19 +104,6 @@ def _proved_rate(found: Certification | Certificate) -> dict[str, Any]:
     evidence, system = found.evidence, found.system
     rate = None if evidence is None else evidence.proved_rate(system)
     return _number("decay_rate", rate, lower_float if system.time == "continuous" else upper_float)
-
-
-def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
-    """Return the facts of the growth per step that signals reach; none in continuous time."""
-    if radius is None:
-        return {}
-    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word]
-    found = {
-        **_number("lower", radius.lower, lower_float),
-        **_number("upper", radius.upper, upper_float),
-        **_number("apart", radius.gap, upper_float),
-    }
-    return {"rho": {**found, "word": word, "method": radius.method}}
 
 
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:

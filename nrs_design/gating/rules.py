@@ -51,7 +51,7 @@ WORDS: Mapping[str, Word] = MappingProxyType(
     {word: Word(word, **texts) for word, texts in _TABLE["words"].items()}
 )
 # Ids of rules that there were; none of them is ever given to another rule.
-RETIRED = frozenset({"NRS111"})
+RETIRED = frozenset({"NRS111", "NRS112"})
 
 SPEC = RULES["NRS001"]
 MODE_STABLE = RULES["NRS101"]
@@ -64,7 +64,6 @@ NOT_DOUBTED = RULES["NRS107"]
 CERTIFIED_GOAL = RULES["NRS108"]
 SCENARIO_LIMIT = RULES["NRS109"]
 NOT_WEAKER = RULES["NRS110"]
-RESPONSE_GOAL = RULES["NRS112"]
 ROS_PARAMETERS = RULES["NRS201"]
 ROS_AXIS = RULES["NRS202"]
 ROS_OTHERS = RULES["NRS203"]

@@ -9,9 +9,7 @@ checked as that of any spec.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,25 +48,6 @@ MOST_ROUNDINGS = 4
 ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
 # A goal that is missed by no more than this share may be met by rounding.
 NEAR = 5e-3
-# What costs less does not bind.
-LEAST_PRICE = 1e-4
-
-
-@dataclass(frozen=True, slots=True)
-class SteeredGoal:
-    """A goal of the certificate that gains were chosen by."""
-
-    key: str  # In the spec
-    wanted: Fraction  # In SI units
-    binds: bool  # Whether gains would be cheaper without it
-    # What one more in SI units costs, in first order; None where the goal does not bind, or where
-    # what it asks for is counted in whole samples.
-    price: float | None
-
-    @property
-    def price_of_a_percent(self) -> float | None:
-        """What it costs to ask for one per cent more."""
-        return None if self.price is None else float(self.wanted) / 100 * self.price
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +60,6 @@ class CertifiedOptimum:
     free_cost: float  # The least without goals of the certificate
     # The best decay rate there in floating point, 1/s; None where it was not looked for.
     free_rate: float | None
-    goals: tuple[SteeredGoal, ...]
     tried: int  # Designs whose rate was found
     # Gains that `design.free` names and that are on a bound, and on which.
     at_bounds: tuple[tuple[str, str], ...] = ()
@@ -137,11 +115,9 @@ def _at_least_cost(
     gains = next(branches, None)
     if gains is None or not meets_goals(result):
         return None
-    one, given = gains.of(designed.design), designed.spec.goals
-    wanted = [] if given is None else [(key, getattr(given, key)) for key in STEERING]
-    goals = tuple(SteeredGoal(key, goal.exact, False, None) for key, goal in wanted if goal)
+    one = gains.of(designed.design)
     cost = gains.cost(one.x)
-    return CertifiedOptimum(result, one.written, cost, cost, None, goals, 0)
+    return CertifiedOptimum(result, one.written, cost, cost, None, 0)
 
 
 class _Search:
@@ -177,7 +153,6 @@ class _Search:
                     self.gains.cost(one.x),
                     self.gains.cost(free),
                     free_rate,
-                    tuple(self._goals(found.shadow_prices)),
                     evaluations,
                     self.gains.at_bounds(found.last.x),
                 )
@@ -214,17 +189,6 @@ class _Search:
             other = minimize_in_trust_region(problem, evaluate((start + bound) / 2, None))
             found = max(found, other, key=lambda one: float(one.last.values.min()))
         return problem, first, found
-
-    def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
-        """Yield the goals that steered, with what they cost."""
-        found = {
-            constraint.key: (bool(price > LEAST_PRICE), float(price) / constraint.one)
-            for constraint, price in zip(self.constraints, prices, strict=True)
-        }
-        for key, wanted in self.wanted.items():
-            # An age is asked for by the modes; what binds is the decay that is to be shown of them.
-            binds, price = found.get(key, (found[self.constraints[0].key][0], None))
-            yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
 
     def _proved(
         self, found: ConstrainedOptimum, problem: ConstrainedProblem

@@ -51,8 +51,6 @@ class ProofConstraint:
     unit: str
     find: Find
     number: Callable[[float], float]  # That a value stands for, in SI units
-    # By how much more a number is asked for where the value is one less, in SI units.
-    one: float
 
 
 def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
@@ -80,7 +78,7 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
             f"decay rate {found.rate:.4g} 1/s",
         )
 
-    return ProofConstraint("decay_rate", "decay rate", "1/s", find, number, scale)
+    return ProofConstraint("decay_rate", "decay rate", "1/s", find, number)
 
 
 def force_constraint(wanted: float) -> ProofConstraint:
@@ -106,7 +104,7 @@ def force_constraint(wanted: float) -> ProofConstraint:
         )
 
     return ProofConstraint(
-        "peak_torque", "bound on the force", "N*m", find, lambda value: wanted * exp(-value), wanted
+        "peak_torque", "bound on the force", "N*m", find, lambda value: wanted * exp(-value)
     )
 
 

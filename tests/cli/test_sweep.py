@@ -13,7 +13,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.cli import exit_codes
 from nrs_design.cli.sweep import SWEPT
-from nrs_design.sweeps.answers import add_answer, read_answers
+from nrs_design.pipeline.sweep_answers import add_answer, read_answers
 from tests.support import SOFT_TISSUE, document_of, run
 
 STIFFNESS = "environments.soft.stiffness"

@@ -36,7 +36,6 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
-from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
@@ -70,7 +69,6 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     band: PassiveBand | None = None
     # Of everything that it touches, in m; None if there is none, or not the same for all.
     lever_arm: float | None = None
-    responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with what is proved of them over all values of the ranges."""
@@ -140,8 +138,10 @@ def analyze(
     ends = given.Mt.min.si, given.Bt.min.si
     own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)))
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
-    asked, of_responses = dict(requirement.goals), response_goals(task.spec.goals, given.goals)
-    measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
+    measures = (
+        *_measures(task),
+        *(item for item in HAND_MEASURES if item in dict(requirement.goals)),
+    )
     return ImpedanceAnalysis(
         name=controller.name,
         achieved=requirement.achieved(measures, Mt, Bt),
@@ -160,9 +160,6 @@ def analyze(
         stiff=tuple(doubt_stiffness(controller.name, requirement, contacts, Mt, Bt)),
         band=None if axis is None else passive_band(axis, law, moving),
         lever_arm=_lever_arm(task, given),
-        responses=tuple(
-            judged_responses(task.spec, of_responses, task.axis, law, moving, task.plant)
-        ),
         # None with more than four ranges at once.
         loops=() if axis is None else ranged_loops(axis, law, contacts, moving),
     )

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import OutputError
-from nrs_design.sweeps.answers import PointAnswer, add_answer, is_shown, read_answers
+from nrs_design.pipeline.sweep_answers import PointAnswer, add_answer, is_shown, read_answers
 from tests.tables import rows
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.sweeps.table import cell_text, chosen, facts_in, flat, telling
+from nrs_design.pipeline.sweep_table import cell_text, chosen, facts_in, flat, telling
 
 
 def test_items_are_called_by_their_names():

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.sweeps.grid import parse_values, read_grid
+from nrs_design.pipeline.sweep_grid import parse_values, read_grid
 from tests.support import COMMUTING, SOFT_TISSUE
 from tests.tables import rows
 

@@ -113,7 +113,7 @@ def certify_switching(
             # Reports are slow to load, and a bare proof says nothing that only they can.
             from nrs_design.reporting.remedies import margin_lines
 
-            for line in margin_lines(margins, loaded.spec):
+            for line in margin_lines(margins):
                 say(f"  {line}")
         if blocked is not None:
             from nrs_design.pipeline.blocked import blocked_lines

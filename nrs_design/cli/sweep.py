@@ -23,8 +23,7 @@ from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.cli.sweep_point import Job
-    from nrs_design.pipeline.sweep_answers import PointAnswer
-    from nrs_design.pipeline.sweep_table import Row
+    from nrs_design.pipeline.sweep_answers import PointAnswer, Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
 SWEPT = (
@@ -108,8 +107,8 @@ def sweep(
     """
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
+    from nrs_design.pipeline.sweep_answers import chosen
     from nrs_design.pipeline.sweep_grid import read_grid
-    from nrs_design.pipeline.sweep_table import chosen
 
     if table is not None:
         check_place(table, SWEEP)
@@ -186,7 +185,7 @@ class _Swept:
 
     @classmethod
     def of(cls, job: Job, points: Sequence[PointAnswer]) -> Self:
-        from nrs_design.pipeline.sweep_table import flat
+        from nrs_design.pipeline.sweep_answers import flat
 
         return cls(job, points, [dict(flat(point.result or {})) for point in points])
 
@@ -212,7 +211,7 @@ class _Swept:
 
     def table(self) -> str:
         """Return all facts as CSV: a row for each point, a column for each number or word."""
-        from nrs_design.pipeline.sweep_table import facts_in
+        from nrs_design.pipeline.sweep_answers import facts_in
 
         text, names = io.StringIO(), facts_in(self.rows)
         writer = csv.writer(text, lineterminator="\n")
@@ -225,7 +224,7 @@ class _Swept:
 
     def show(self, wanted: list[str] | None) -> None:
         """Print what was set, how it ended, and some facts; by default those that differ."""
-        from nrs_design.pipeline.sweep_table import cell_text, telling
+        from nrs_design.pipeline.sweep_answers import cell_text, telling
 
         # How it ended has a column of its own.
         names = wanted or [name for name in telling(self.rows) if name != "verdict"]

@@ -17,10 +17,9 @@ from typing import Any, NamedTuple, Self
 from nrs_design.design.largest_ratio import bernstein, bound_ratio
 from nrs_design.errors import InternalError
 from nrs_design.loop.cut_loop import ContinuousAxis, Place
+from nrs_design.loop.hull import rational
 from nrs_design.models.interval import Interval
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
-from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.exact import is_hurwitz_polynomial
 
 ZERO, ONE = Fraction(0), Fraction(1)
 
@@ -56,7 +55,7 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polyn
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
     )
     weights = [
-        as_fmpq(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
+        rational(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
         for end in ends
     ]
     for found, *at_corners in zip(inside, *corners, strict=True):
@@ -79,11 +78,7 @@ def is_stable_over(poles: Response, ranges: Mapping[str, Interval]) -> bool:
 
 def _is_hurwitz(P: Polynomial) -> bool:
     """Tell whether the roots of a polynomial are on the left."""
-    *rest, leading = (Fraction(int(c.p), int(c.q)) for c in P.coeffs())
-    n = len(rest)
-    rows = [[ONE * (j == i + 1) for j in range(n)] for i in range(n - 1)]
-    rows += [[-c / leading for c in rest]] * (n > 0)
-    return not rows or is_stable(RationalMatrix.from_rows(rows), Time.CONTINUOUS)
+    return is_hurwitz_polynomial([int(c) for c in reversed(P.numer().coeffs())])
 
 
 class Squares:
@@ -130,7 +125,7 @@ class Squares:
 
     def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
-        ends = as_fmpq(piece.low), as_fmpq(piece.high)
+        ends = rational(piece.low), rational(piece.high)
         full = ([p[i] for i in range(self._size)] for p in grid)
         return [c for p in full for c in bernstein(p[::-1] if piece.inverse else p, *ends)]
 
@@ -186,14 +181,7 @@ def polynomial(*coefficients: Fraction) -> Polynomial:
     """Return the polynomial with some coefficients, the highest power first."""
     from flint import fmpq_poly
 
-    return fmpq_poly([as_fmpq(c) for c in reversed(coefficients)])
-
-
-def as_fmpq(number: Fraction) -> Any:
-    """Return a rational number of flint."""
-    from flint import fmpq
-
-    return fmpq(number.numerator, number.denominator)
+    return fmpq_poly([rational(c) for c in reversed(coefficients)])
 
 
 def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
@@ -203,4 +191,4 @@ def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Plac
     """
     nominal = axis.places[0].motor
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
-    return Place(replace(nominal, gain=gain, time_constant=tau)), as_fmpq(tau)
+    return Place(replace(nominal, gain=gain, time_constant=tau)), rational(tau)

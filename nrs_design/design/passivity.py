@@ -17,7 +17,7 @@ frequency is about.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
@@ -29,7 +29,6 @@ from nrs_design.design.affine_family import (
     ZERO,
     Polynomial,
     Response,
-    as_fmpq,
     corners_in,
     motor_at,
     polynomial,
@@ -38,6 +37,7 @@ from nrs_design.design.affine_family import (
     zeros_at_rest,
 )
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.hull import rational
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
@@ -48,6 +48,8 @@ from nrs_design.proof.spectrum import is_stable
 # How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
 # often twice as far.
 SHARE, STEPS = Fraction(1, 10**5), 40
+# Decimals of a frequency in rad/s.
+DIGITS = 6
 
 Enclosed = tuple[Fraction, Fraction]
 
@@ -79,9 +81,7 @@ def passive_band(
     if any(P[0] <= 0 for P in grid.values()):
         return PassiveBand(ZERO, None)
     roots = {at: bracket for at, P in grid.items() if (bracket := first_root(P)) is not None}
-    broken = (
-        _negative_beyond((grid[at],), high, 6) for at, (_, high) in roots.items() if 1 not in at
-    )
+    broken = (_negative_beyond(grid[at], high) for at, (_, high) in roots.items() if 1 not in at)
     passive = root_below(min(low for low, _ in roots.values())) if roots else None
     return PassiveBand(passive, min((omega for omega in broken if omega), default=None))
 
@@ -94,7 +94,7 @@ def real_parts(
     They are the Bernstein coefficients over the box: at its corners, the values there.
     """
     corners = corners_in(impedance_at(axis, law), ranges)
-    return [without_zeros(P) for P in squared_over(corners, real_product)]
+    return [P.right_shift(zeros_at_rest(P)) for P in squared_over(corners, real_product)]
 
 
 def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
@@ -111,11 +111,6 @@ def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
     return at
 
 
-def without_zeros(P: Polynomial) -> Polynomial:
-    """Leave out powers of x that all terms have."""
-    return P.right_shift(zeros_at_rest(P))
-
-
 def first_root(P: Polynomial) -> Enclosed | None:
     """Return numbers between which the smallest positive root is, or None if there is none.
 
@@ -126,19 +121,17 @@ def first_root(P: Polynomial) -> Enclosed | None:
     return min(positive, default=None)
 
 
-def _negative_beyond(
-    polynomials: Iterable[Polynomial], x: Fraction, digits: int
-) -> Fraction | None:
-    """Return a number of so many digits, its square a little beyond x, where all are negative."""
+def _negative_beyond(P: Polynomial, x: Fraction) -> Fraction | None:
+    """Return a number whose square is a little beyond x, and where P is negative."""
     step = SHARE * x
     for _ in range(STEPS):
-        root = root_below(x + step, digits) + Fraction(1, 10**digits)
-        if all(P(as_fmpq(root**2)) < 0 for P in polynomials):
+        root = root_below(x + step) + Fraction(1, 10**DIGITS)
+        if P(rational(root**2)) < 0:
             return root
         step *= 2
     return None
 
 
-def root_below(x: Fraction, digits: int = 6) -> Fraction:
-    """Return a number of so many decimals whose square is not above x."""
-    return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
+def root_below(x: Fraction) -> Fraction:
+    """Return a number of a few decimals whose square is not above x."""
+    return Fraction(isqrt(int(x * 10 ** (2 * DIGITS))), 10**DIGITS)

@@ -39,7 +39,6 @@ from nrs_design.design.affine_family import (
     Response,
     Square,
     Squares,
-    as_fmpq,
     corners_in,
     everywhere,
     is_stable_over,
@@ -52,6 +51,7 @@ from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import GoalStanding, Measure
 from nrs_design.design.transfer import frequencies
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.hull import rational
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
@@ -109,7 +109,9 @@ class RangedLoop:
         """
         place, factor = motor_at(self.axis, values)
         contact = self._contact(values)
-        factor *= as_fmpq(prod((contact[name] for name in self.environment.law.inverse), start=ONE))
+        factor *= rational(
+            prod((contact[name] for name in self.environment.law.inverse), start=ONE)
+        )
         loop = self.axis.cut(self.law, self.environment.at(contact), place)
         first = loop.free if held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)
@@ -122,7 +124,7 @@ class RangedLoop:
 
         def poles(values: Mapping[str, Fraction]) -> tuple[Polynomial]:
             opened, closed = self._cut(values)
-            return (opened + as_fmpq(values.get("factor", ONE)) * (closed - opened),)
+            return (opened + rational(values.get("factor", ONE)) * (closed - opened),)
 
         box = self.box | ({"factor": Interval(ONE, ONE, gain)} if gain > 1 else {})
         return gain >= 1 and is_stable_over(poles, box)
@@ -208,7 +210,7 @@ class RangedLoop:
 
         def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
             opened, closed = self._cut(values)
-            return closed, as_fmpq(values["share"]) * (closed - 2 * opened)
+            return closed, rational(values["share"]) * (closed - 2 * opened)
 
         made = corners_in(at, {**self.box, "share": share})
         return Squares(made, square=square).vanish_nowhere(pieces)

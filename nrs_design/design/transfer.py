@@ -16,6 +16,7 @@ from itertools import zip_longest
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
@@ -132,16 +133,12 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def ratio(numerator: FloatArray, denominator: FloatArray, omega: FloatArray) -> ComplexArray:
     """Return ``N/D`` at ``j omega``: row i at all frequencies (rad/s) of row i; NaN for NaN."""
+    s = 1j * omega
     with np.errstate(invalid="ignore"):
-        return _evaluate(numerator, omega) / _evaluate(denominator, omega)
-
-
-def _evaluate(polynomials: FloatArray, omega: FloatArray) -> ComplexArray:
-    s = np.asarray(1j * omega, dtype=np.complex128)
-    value = np.zeros(omega.shape, dtype=np.complex128)
-    for coefficient in polynomials.T:
-        value = value * s + coefficient[:, None]
-    return value
+        above, below = (
+            polyval(s, p.T[::-1, :, None], tensor=False) for p in (numerator, denominator)
+        )
+        return np.asarray(above / below, dtype=np.complex128)
 
 
 def stationary(numerator: FloatArray, denominator: FloatArray) -> FloatArray:

@@ -125,8 +125,6 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
         }
-    if margins.misses is not None:
-        content["most_misses"] = _ends(margins.misses)
     if margins.loop is not None:
         content["loop_margins"] = loop_facts(margins.loop)
     return content

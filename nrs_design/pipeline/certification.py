@@ -100,61 +100,51 @@ def certify_design(
     Where the goal `delay` asks for an older force than the spec declares, that is proved of it, if
     all goals that gains are chosen by are met then; it holds of the younger one.
     """
-    prover = _Prover(loaded, limits or search_limits(loaded.spec), progress)
+    from nrs_design.search.certify import certify
+
+    limits = limits or search_limits(loaded.spec)
+
+    def certified(designed: Designed | None) -> Certification:
+        with placed(loaded):
+            system = assemble_spec(loaded, designed)
+        return certify(system, method, limits, progress)
+
     older: tuple[Attempt, ...] = ()
     try:
         wide = None if designed is None else for_goal(designed)
         if designed is not None and wide is not None:
-            found = prover.certified(wide, method)
+            found = certified(wide)
             if (result := _of_older(designed, wide, found)) is not None:
                 return result
             older = tuple(replace(a, step=f"{a.step}, older force") for a in found.attempts)
     except (DesignError, AssemblyError):
         pass  # What is not modelled is not proved.
-    found = prover.certified(designed, method)
-    points = ""
-    if found.is_open:
-        points, found = prover.at_points(designed, found)
+    found, points = certified(designed), ""
+    if found.is_open and designed is not None and designed.spec.sampling is not None:
+        points, found = _at_points(designed, found, limits, progress)
     found = replace(found, attempts=(*older, *found.attempts))
     return Result(loaded, designed, found, certificate_of(loaded, designed, found, points))
 
 
-@dataclass(frozen=True, slots=True)
-class _Prover:
-    """Takes designs of a spec to verdicts."""
+def _at_points(
+    designed: Designed, known: Certification, limits: Limits, progress: Progress
+) -> tuple[str, Certification]:
+    """Look for growth at points of the ranges, which their enclosure does not refute."""
+    from nrs_design.loop.assemble import POINTS, assemble
+    from nrs_design.search.certify import certify
 
-    loaded: LoadedSpec
-    limits: Limits
-    progress: Progress
-
-    def certified(self, designed: Designed | None, method: Method) -> Certification:
-        from nrs_design.search.certify import certify
-
-        with placed(self.loaded):
-            system = assemble_spec(self.loaded, designed)
-        return certify(system, method, self.limits, self.progress)
-
-    def at_points(
-        self, designed: Designed | None, known: Certification
-    ) -> tuple[str, Certification]:
-        """Look for growth at points of the ranges, which their enclosure does not refute."""
-        from nrs_design.loop.assemble import POINTS, assemble
-        from nrs_design.search.certify import certify
-
-        if designed is None or designed.spec.sampling is None:
-            return "", known
-        limits = replace(self.limits, budget=self.limits.budget / 4)
-        for points in POINTS:
-            with placed(self.loaded):
-                system = assemble(designed.spec, designed.plant, designed.design, points=points)
-            if system.modes == known.system.modes:
-                continue
-            found = certify(system, Method.PERIOD, limits, self.progress)
-            tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
-            known = replace(known, attempts=(*known.attempts, *tried))
-            if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
-                return points, replace(found, attempts=known.attempts)
-        return "", known
+    limits = replace(limits, budget=limits.budget / 4)
+    for points in POINTS:
+        with placed(designed.loaded):
+            system = assemble(designed.spec, designed.plant, designed.design, points=points)
+        if system.modes == known.system.modes:
+            continue
+        found = certify(system, Method.PERIOD, limits, progress)
+        tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
+        known = replace(known, attempts=(*known.attempts, *tried))
+        if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
+            return points, replace(found, attempts=known.attempts)
+    return "", known
 
 
 def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:

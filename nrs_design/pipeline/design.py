@@ -165,8 +165,5 @@ def declaring(designed: Designed, age: int) -> Designed:
     """Return a design whose spec declares ages of the force up to this one, in samples."""
     assert designed.spec.sampling is not None, "a delay is of samples"
     least = designed.spec.sampling.delay[0]
-    return _with_spec(designed, designed.spec.declaring_ages((min(least, age), age)))
-
-
-def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:
+    spec = designed.spec.declaring_ages((min(least, age), age))
     return replace(designed, loaded=replace(designed.loaded, spec=spec), spec=spec)

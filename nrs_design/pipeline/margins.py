@@ -8,22 +8,19 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.spec.misses import MOST_STATES, MissRuleSpec
 
 if TYPE_CHECKING:
     from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.spec.sampling import SamplingSpec
 
 MARGIN_BUDGET = 10.0
-# More misses in a row are not tried.
-MOST_IN_A_ROW = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +30,6 @@ class ProofMargins:
     loop: MarginBrackets | None = None  # Of delay, period and disturbances
     box: Bracket | None = None  # Of the declared ranges
     dwell: Bracket | None = None  # Of the time between switches
-    misses: Bracket | None = None  # Of the number of deadlines that may be missed
 
 
 def run_proof_margins(
@@ -51,8 +47,7 @@ def run_proof_margins(
     changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
     """
     # Before minutes of work.
-    rule = _rule_for_misses(result)
-    if margin and rule is None and not _has_loop(result):
+    if margin and not _has_loop(result):
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
@@ -63,48 +58,7 @@ def run_proof_margins(
         loop=_run_loop(result, quick, progress) if margin else None,
         box=_run_box(result, quick, progress) if margin and ranged else None,
         dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
-        misses=_run_misses(rule, result, quick, progress) if margin and rule else None,
     )
-
-
-def _rule_for_misses(result: Result) -> MissRuleSpec | None:
-    """Return how many deadlines may be missed, if a spec says so."""
-    if result.designed is not None:
-        sampling = result.designed.spec.sampling
-        return None if sampling is None else sampling.misses
-    spec = result.loaded.spec
-    return spec.misses if spec.kind == "switched-system" else None
-
-
-def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the most misses in the same window, or in a row, with a proof."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_most_misses
-
-    declared, of = rule.window
-
-    def assemble(number: Fraction) -> SwitchedSystem:
-        changed = rule.with_misses(int(number))
-        if (many := changed.states) > MOST_STATES:
-            raise AssemblyError(f"{many} states, and at most {MOST_STATES} are built")
-        return _with_rule(result, changed)
-
-    most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
-    known = result.certification
-    return find_most_misses(
-        declared, most, assemble, partial(certify, limits=limits), known, progress
-    )
-
-
-def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
-    """Return the system of a spec, undisturbed, under another rule for misses."""
-    from nrs_design.loop.assemble import assemble_matrices
-
-    if result.designed is not None:
-        return _with_sampling(result.designed, {"misses": rule})
-    spec = result.loaded.spec
-    assert spec.kind == "switched-system"
-    return assemble_matrices(spec.model_copy(update={"misses": rule}))
 
 
 def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import axis_with
-from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed, run_analysis

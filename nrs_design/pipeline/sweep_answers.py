@@ -1,19 +1,30 @@
-"""Answers of points in a file, from which a sweep goes on: a line each, written as they come.
+"""Answers of the points of a sweep: in a file, a line each, and as a table, a column for each fact.
 
-The file proves nothing: what claims to be proved or refuted is used again only as far as a
-certificate beside it, which is checked again, shows the same.
+A sweep goes on from the file, which proves nothing: what claims to be proved or refuted is used
+again only as far as a certificate beside it, which is checked again, shows the same.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
+from nrs_design.errors import NrsDesignError
 from nrs_design.files import open_regular
 from nrs_design.output import SWEEP_ANSWERS, check_place, write_output
+from nrs_design.proof.text import quoted
+from nrs_design.spec.faults import did_you_mean
+
+Cell: TypeAlias = str | int | float | bool | None
+Row: TypeAlias = Mapping[str, Cell]
+# Facts that name a file or its content, of which no table is made.
+_NAMES = ("sha256", "_id", "schema")
+# Longer words are sentences, or exact numbers.
+SHORT = 20
+_EXACT = "_exact"
 
 # Words that are verdicts, and how the names of numbers begin that are claimed.
 _VERDICTS = frozenset({"proved", "refuted", "exists", "impossible"})
@@ -85,3 +96,71 @@ def _claims(said: object) -> bool:
     if isinstance(said, list | tuple):
         return any(map(_claims, said))
     return isinstance(said, str) and said.lower() in _VERDICTS
+
+
+def flat(document: object, name: str = "") -> Iterator[tuple[str, Cell]]:
+    """Yield each number and word of a JSON document with its dotted name.
+
+    Items of a list are called by their ``name``, else counted from 0.
+    """
+    inner: Sequence[tuple[str, object]] = ()
+    if isinstance(document, Mapping):
+        inner = [(str(key), value) for key, value in document.items() if key != "name"]
+    elif isinstance(document, list | tuple):
+        inner = [(_called(item, at), item) for at, item in enumerate(document)]
+    elif document is None or isinstance(document, str | int | float | bool):
+        yield name, document
+    for key, value in inner:
+        if not key.endswith(_NAMES):
+            yield from flat(value, f"{name}.{key}" if name else key)
+
+
+def _called(item: object, at: int) -> str:
+    named = item.get("name") if isinstance(item, Mapping) else None
+    return named if isinstance(named, str) and named else str(at)
+
+
+def facts_in(rows: Sequence[Row]) -> list[str]:
+    """Return the names of all facts, in the order in which they are met."""
+    return list(dict.fromkeys(name for row in rows for name in row))
+
+
+def telling(rows: Sequence[Row]) -> list[str]:
+    """Return the facts that differ from answer to answer and are short, the topmost first."""
+    rows = [row for row in rows if row]
+    found = [
+        name
+        for name in facts_in(rows)
+        if not name.endswith(_EXACT)
+        and len({row.get(name) for row in rows}) > 1
+        and all(
+            isinstance(row.get(name), float) or len(str(row.get(name))) <= SHORT for row in rows
+        )
+    ]
+    return sorted(found, key=lambda name: name.count("."))
+
+
+def chosen(rows: Sequence[Row], wanted: Sequence[str]) -> list[str]:
+    """Return the facts that are asked for, each by its whole name, or by how the shortest end."""
+    found: list[str] = []
+    for name in wanted:
+        every = facts_in(rows)
+        named = [one for one in every if one == name or one.endswith(f".{name}")]
+        if not named:
+            told = [*telling(rows), *every]
+            raise NrsDesignError(
+                f"no answer has a fact {quoted(name)}", remedy=did_you_mean(name, told, "there are")
+            )
+        # Facts of the same name further down are parts of others.
+        least = min(one.count(".") for one in named)
+        found += [one for one in named if one.count(".") == least]
+    return list(dict.fromkeys(found))
+
+
+def cell_text(value: Cell) -> str:
+    """Write a fact for people."""
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

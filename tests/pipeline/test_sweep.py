@@ -1,0 +1,159 @@
+"""The points of a sweep, as a spec writes them, and their answers: in a file, as a table."""
+
+from itertools import product
+
+import pytest
+
+from nrs_design.errors import NrsDesignError, OutputError, SpecError
+from nrs_design.pipeline.sweep_answers import (
+    PointAnswer,
+    add_answer,
+    cell_text,
+    chosen,
+    facts_in,
+    flat,
+    is_shown,
+    read_answers,
+    telling,
+)
+from nrs_design.pipeline.sweep_grid import parse_values, read_grid
+from tests.support import COMMUTING, SOFT_TISSUE
+from tests.tables import rows
+
+LEVER = "environments.soft.lever_arm=0.2,0.3 m"
+STIFFNESS = "environments.soft.stiffness=100..400/4 N/m"
+
+
+def test_every_combination_once_and_the_last_field_fastest():
+    grid = read_grid(SOFT_TISSUE, [LEVER, STIFFNESS])
+    stiffness = [f"{value} N/m" for value in (100, 200, 300, 400)]
+    assert grid.points == list(product(["0.2 m", "0.3 m"], stiffness))
+    assert grid.changes(grid.points[0]) == (
+        (("environments", "soft", "lever_arm"), "0.2 m"),
+        (("environments", "soft", "stiffness"), "100 N/m"),
+    )
+
+
+def test_items_of_lists_are_counted_from_0():
+    grid = read_grid(COMMUTING, ["modes.1.A.0.0=-1,-2"])
+    assert grid.changes(grid.points[1]) == ((("modes", 1, "A", 0, 0), "-2"),)
+
+
+def test_the_unit_above_a_column():
+    first, second = read_grid(SOFT_TISSUE, [STIFFNESS, "limits.torque=1 N*m,2 kN*m"]).fields
+    assert (first.unit, second.unit) == ("N/m", "")
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        (["stiffness=1 N/m"], "did you mean environments.soft.stiffness"),
+        (["sampling.delay=1"], "write one of kind, name"),
+        (["limits.torqe=1 N*m"], "did you mean limits.torque"),
+        (["environments.soft.zzzzzzzzzzzzzzzzzzzz=1 N*m"], "write one of environments.soft"),
+        ([], "one to 3 fields, not 0"),
+        ([LEVER] * 4, "one to 3 fields, not 4"),
+        (["limits.torque=1..1001/5001 N*m", STIFFNESS], "5001 x 4 points"),
+        (["limits.torque"], "sets nothing"),
+    ],
+)
+def test_what_makes_no_grid(said, message):
+    with pytest.raises(SpecError, match=message):
+        read_grid(SOFT_TISSUE, said)
+
+
+@pytest.mark.parametrize(("text", "values"), rows(__file__, "test_values"))
+def test_values(text, values):
+    assert list(parse_values(text)) == values
+
+
+REFUSED = (
+    "|,|1,|2..1/3 N|1..1/2 N|1..2/0 N|1..2/99999 N|1..2/1|1..2|1...2 N|a..b|1..2/-3|1..|[1, 2]"
+    "|1,2,1 N"
+)
+
+
+@pytest.mark.parametrize("text", REFUSED.split("|"))
+def test_what_has_no_values_is_refused(text):
+    with pytest.raises(SpecError):
+        parse_values(text)
+
+
+@pytest.mark.parametrize("document", rows(__file__, "test_claims"))
+def test_claims(document):
+    assert not is_shown(document, {})
+    assert is_shown(document, document)
+    assert not is_shown(document, {"verdict": "inconclusive"})
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        {"verdict": "inconclusive"},
+        {"claim": None, "proved": False, "goals": [{"proved": False}]},
+        {"Mt": 0.01, "text": "not proved"},
+    ],
+)
+def test_no_claims(document):
+    assert is_shown(document, {})
+
+
+def test_beside_what_is_shown_nothing_more_may_be_claimed():
+    assert is_shown({"verdict": "proved", "method": "lmi"}, {"verdict": "proved"})
+    assert not is_shown({"verdict": "proved", "cost": 1.0}, {"verdict": "proved"})
+    assert not is_shown({"verdict": "proved", "proved_scale": 1.0}, {"verdict": "proved"})
+    assert not is_shown({"cost": 1.0}, {"verdict": "proved"})
+
+
+def test_the_last_answer_of_a_point_counts(tmp_path):
+    file = tmp_path / "kept.jsonl"
+    assert read_answers(file) == {}
+    first, other = (PointAnswer((v,), 0, "k", {"text": "\ud800"}) for v in ("1 N", "2 N"))
+    last = PointAnswer(("1 N",), 1, "k", {})
+    for answer in (first, other, last):
+        add_answer(file, answer)
+    assert read_answers(file) == {("1 N",): last, ("2 N",): other}
+
+
+def test_no_file_of_somebody_else_is_added_to(tmp_path):
+    file = tmp_path / "kept.jsonl"
+    file.write_text("mine")
+    with pytest.raises(OutputError, match="not overwritten"):
+        read_answers(file)
+
+
+def test_items_are_called_by_their_names():
+    document = {
+        "spec_sha256": "ab",
+        "controllers": [{"name": "in", "Mt": 1.5}, {"name": "out", "Mt": None}],
+        "modes": ["a", "b"],
+        "empty": [],
+    }
+    assert dict(flat(document)) == {
+        "controllers.in.Mt": 1.5,
+        "controllers.out.Mt": None,
+        "modes.0": "a",
+        "modes.1": "b",
+    }
+
+
+def test_a_fact_tells_if_it_differs_and_is_short():
+    rows = [
+        {"same": 1, "rate": 0.1, "said": "a" * 30, "rate_exact": "1/10"},
+        {"same": 1, "rate": 0.2, "said": "b" * 30, "rate_exact": "1/5", "late": 1},
+        {"same": 1, "rate": 0.2, "late": 1},
+    ]
+    assert facts_in(rows) == ["same", "rate", "said", "rate_exact", "late"]
+    assert telling(rows) == telling([*rows, {}]) == ["rate", "late"]
+
+
+def test_facts_are_chosen_by_how_they_end():
+    rows = [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
+    assert chosen(rows, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
+    with pytest.raises(NrsDesignError, match="no answer has a fact 'Bx'"):
+        chosen(rows, ["Bx"])
+
+
+def test_cells():
+    values = {None: "-", True: "yes", False: "no", 1 / 3: "0.333333", 7: "7", "a": "a"}
+    assert {value: cell_text(value) for value in values} == values

@@ -1,13 +1,11 @@
 """What a controller achieves at worst, beside what the spec asks for.
 
-The loop is that of the modes that a certificate is about, cut where the law takes the force.
-Margins are taken in every contact: at the nominal values of the environment that the controller is
-designed for, and at all corners of the declared ranges of all its contacts and of the motor,
-sampled at every age of the force sample. Displayed impedance and force error are what the design is
-for: they are taken in the environment that it is designed for. The worst of a goal is also looked
-for at some points between the corners. All of it is floating point, and no proof: a goal is met
-where it is proved over all ranges, where nothing has a range, or where the measure rises or falls
-with each parameter throughout, so that a corner is the worst.
+The loop is that of the proved modes, cut where the law takes the force. Margins are taken in every
+contact, nominal and at all corners of the ranges of contact and motor, sampled at every age of the
+force sample; displayed impedance and force error in the contact of the design alone. The worst of a
+goal is also looked for between the corners. All of it is floating point, and no proof: a goal is
+met where it is proved over all ranges, where nothing has a range, or where a corner is surely the
+worst.
 """
 
 from __future__ import annotations

@@ -3,10 +3,9 @@
 Parts are in continuous time and at nominal values. A closed loop is the feedback of these parts and
 of nothing else, but where what is touched acts on the motor (`load_inertia`).
 
-Open loops are those whose margins a design has: `nrs_design.loop.cut_loop` cuts the modes of a
-proof where the law takes the force. Two such modes, with the force and without it, differ by a
-column times a row, exactly: ``-B C``. With A of the mode without it, ``L = C (s I - A)^-1 B``, and
-``A - B C`` is the mode that is proved.
+Open loops are cut where the law takes the force (`nrs_design.loop.cut_loop`). Two modes, with the
+force and without it, differ by a column times a row, exactly: ``-B C``. With A of the mode without
+it, ``L = C (s I - A)^-1 B``, and ``A - B C`` is the mode that is proved.
 """
 
 from __future__ import annotations

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.design.transfer import BoolArray, FloatArray
+from nrs_design.design.transfer import FloatArray
 
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -25,6 +26,8 @@ TOLERANCE = 1e-5
 _ACROSS, _STARTS, _STEP = 25, 4, (1 / 96, 1 / 160)
 # Coordinates v of the valley: at first, and around the best of them in each round.
 _COARSE, _FINE, _ROUNDS = 49, 7, 8
+# Offsets of the pattern in u and v, the center first.
+_PATTERN = np.array([*product((0.0, -1.0, 1.0, -2.0, 2.0), repeat=2)])
 _MAX_ROUNDS = 100
 _LEAST_PROGRESS = 1e-10
 
@@ -72,7 +75,7 @@ def refine(objective: Objective, start: Points) -> Points:
     The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
     find every neighbor higher and stop halfway down.
     """
-    offsets = start.step * _pattern(start.step > 0)
+    offsets = start.step * _PATTERN
     u, v, scale = start.u.copy(), start.v.copy(), np.ones(len(start.u))
     for _ in range(_MAX_ROUNDS):
         rows = np.flatnonzero(scale * start.step.max() > TOLERANCE)
@@ -93,12 +96,6 @@ def refine(objective: Objective, start: Points) -> Points:
 def _onto_square(w: FloatArray) -> FloatArray:
     """Clip to 0 to 1; for few numbers this takes half the time of `numpy.clip`."""
     return np.minimum(np.maximum(w, 0.0), 1.0)
-
-
-def _pattern(free: BoolArray) -> FloatArray:
-    """Return the offsets in u and v, the center first; a parameter that is not free stays."""
-    axes = [[0.0, -1.0, 1.0, -2.0, 2.0] if moves else [0.0] for moves in free]
-    return np.array([(i, j) for i in axes[0] for j in axes[1]])
 
 
 def snap(

@@ -1,10 +1,9 @@
 """Margins over whole ranges, in exact arithmetic.
 
-The worst margin at the corners of all ranges is floating point, and says nothing of values in
-between. Here it is only a proposal: rounded to its unfavorable side, it is proved for every
-stiffness and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
-``C = D + N``, of which `nrs_design.loop.cut_loop` gives D and C exactly, everywhere on the
-imaginary axis:
+The worst margin at the corners of all ranges is floating point, and only a proposal: rounded to its
+unfavorable side, it is proved for every stiffness and motor in their ranges, each constant. The
+open loop is ``N/D``, and ``C = D + N``, exactly (`nrs_design.loop.cut_loop`). On the imaginary
+axis:
 
 - ``|S| <= Ms`` is ``|D| <= Ms |C|``, and the disk margin d is ``|D - N| <= 2/d |C|``;
 - the gain margin g says that ``D + f N`` keeps its roots on the left for factors f from 1 to g;
@@ -13,8 +12,7 @@ imaginary axis:
 - the delay margin T says the same of ``a = -omega T'`` with ``0 <= T' <= T``. Below a frequency w,
   t is between 0 and ``-omega tan(w T/2)/w``; beyond the last gain crossover, nothing is zero.
 
-All of it is affine in each parameter, so squares of magnitudes have Bernstein forms, which
-`nrs_design.design.largest_ratio` takes.
+All of it is affine in each parameter, so squares of magnitudes have Bernstein forms.
 """
 
 from __future__ import annotations
@@ -297,10 +295,8 @@ def with_proofs(
 
 def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
     """Return the best value that is proved for all loops, of those that are proposed."""
-    for value in _proposed(found):
-        if all(loop.holds(found.measure, value) for loop in loops):
-            return value
-    return None
+    proved = (v for v in _proposed(found) if all(loop.holds(found.measure, v) for loop in loops))
+    return next(proved, None)
 
 
 def _proposed(found: Achieved) -> Iterator[Fraction]:

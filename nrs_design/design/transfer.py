@@ -154,8 +154,7 @@ def _derivative(polynomials: FloatArray) -> FloatArray:
 def product_parts(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Split ``a(j omega) conj(b(j omega)) = R(x) + j omega I(x)``."""
     (a_even, a_odd), (b_even, b_odd) = _even_odd(a), _even_odd(b)
-    odd = multiply(a_odd, b_odd)
-    shifted = np.concatenate([odd, np.zeros((len(odd), 1))], axis=1)
+    shifted = np.pad(multiply(a_odd, b_odd), ((0, 0), (0, 1)))
     imaginary = multiply(a_odd, b_even) - multiply(a_even, b_odd)
     return _sum(multiply(a_even, b_even), shifted), imaginary
 
@@ -169,11 +168,10 @@ def _even_odd(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _sum(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Add polynomials row by row."""
     width = max(a.shape[1], b.shape[1])
-    total = np.zeros((len(a), width))
-    total[:, width - a.shape[1] :] += a
-    total[:, width - b.shape[1] :] += b
-    return total
+    a, b = (np.pad(p, ((0, 0), (width - p.shape[1], 0))) for p in (a, b))
+    return np.asarray(a + b)
 
 
 def squared(polynomials: FloatArray) -> FloatArray:

@@ -143,7 +143,7 @@ class _Search:
         for left, lines in zip(range(len(ways), 0, -1), ways, strict=True):
             if lines and self._decide(_least(lines), (until - self._spent) / left):
                 break
-        return (self._least_proved(lines),)
+        return (self._proved([(line, line.weakest, 0) for line in lines]),)
 
     def _single(
         self, lines: Sequence[SpecRelaxation], find: float, stretch: float
@@ -221,9 +221,6 @@ class _Search:
         if decided.verdict is not Verdict.PROVED:
             return None
         return _Decided(loaded, decided, gains_text(designed))
-
-    def _least_proved(self, lines: Sequence[SpecRelaxation]) -> Proved:
-        return self._proved([(line, line.weakest, 0) for line in lines])
 
     def _proved(self, lines: Sequence[tuple[SpecRelaxation, RelaxationSteps, int]]) -> Proved:
         edits = [line.edit(form, step) for line, form, step in lines]

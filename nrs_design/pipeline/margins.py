@@ -43,9 +43,13 @@ def run_proof_margins(
     """Find the margins that a command asks for; the decay rate is not optimized.
 
     `margin`: those of ranges, delay, period and disturbances; of ranges alone, a spec must have
-    some. `shortest_dwell`: that of the time between switches, in discrete time, where nothing else
+    some. `shortest_dwell`: that of the time between switches, in continuous time, where nothing else
     changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
     """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_margin, find_shortest_dwell
+
+    loaded, known = result.loaded, result.certification
     # Before minutes of work.
     if margin and not _has_loop(result):
         _refuse_box(result)
@@ -53,12 +57,18 @@ def run_proof_margins(
         _refuse_dwell(result)
     # Of many searches, for each a proof is enough, whatever its decay rate.
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
-    ranged = result.loaded.spec.has_ranges
-    return ProofMargins(
-        loop=_run_loop(result, quick, progress) if margin else None,
-        box=_run_box(result, quick, progress) if margin and ranged else None,
-        dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
-    )
+    decide = partial(certify, limits=quick)
+    loop = box = dwell = None
+    if margin:
+        loop = _run_loop(result, quick, progress)
+    if margin and loaded.spec.has_ranges:
+        # Around the nominal values; the design is kept.
+        stretched = partial(assemble_spec, loaded, result.designed)
+        box = find_margin(stretched, decide, known, progress)
+    if shortest_dwell:
+        # Whatever dwell time the spec declares.
+        dwell = find_shortest_dwell(known.system, decide, known, progress)
+    return ProofMargins(loop, box, dwell)
 
 
 def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:
@@ -67,15 +77,6 @@ def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> Switche
     sampling = designed.spec.sampling.model_copy(update=changes)
     changed = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
     return assemble_spec(designed.loaded, replace(designed, spec=changed))
-
-
-def _run_box(result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the largest box around the nominal values that still has a proof; the design is kept."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_margin
-
-    assemble_at = partial(assemble_spec, result.loaded, result.designed)
-    return find_margin(assemble_at, partial(certify, limits=limits), result.certification, progress)
 
 
 def _refuse_box(result: Result) -> None:
@@ -149,15 +150,6 @@ def _command_margin(result: Result) -> CommandMargin | None:
     system = result.certification.system
     found = bound_on(system, result.certification.statements, "force") if system.channels else None
     return None if found is None else command_margin(found, worst_against(system, found).value)
-
-
-def _run_dwell(result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the shortest dwell time with a proof, whatever dwell time the spec declares."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_shortest_dwell
-
-    known = result.certification
-    return find_shortest_dwell(known.system, partial(certify, limits=limits), known, progress)
 
 
 def _refuse_dwell(result: Result) -> None:

@@ -56,10 +56,7 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
     roots = poles(closed)
     zeta, wn = dominant_pair(roots)
     return ForceLoop(
-        gain=gain,
-        poles=tuple(complex(p) for p in roots),
-        damping_ratio=zeta,
-        natural_frequency=wn,
+        gain=gain, poles=tuple(complex(p) for p in roots), damping_ratio=zeta, natural_frequency=wn
     )
 
 

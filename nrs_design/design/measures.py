@@ -140,11 +140,7 @@ class Measure:
 SENSITIVITY_PEAK = Measure("max_sensitivity_peak", "sensitivity peak Ms", doubtful=2.0)
 GAIN_MARGIN = Measure("min_gain_margin", "gain margin", doubtful=2.0)
 PHASE_MARGIN = Measure(
-    "min_phase_margin",
-    "phase margin",
-    unit="deg",
-    scale=180 / math.pi,
-    doubtful=math.radians(30),
+    "min_phase_margin", "phase margin", unit="deg", scale=180 / math.pi, doubtful=math.radians(30)
 )
 DELAY_MARGIN = Measure("min_delay_margin", "delay margin", unit="ms", scale=1e3)
 DISK_MARGIN = Measure("min_disk_margin", "disk margin")

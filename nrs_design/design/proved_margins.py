@@ -199,10 +199,7 @@ class RangedLoop:
         return True
 
     def _nowhere_zero(
-        self,
-        share: Interval,
-        square: Square,
-        pieces: Sequence[FrequencyPiece],
+        self, share: Interval, square: Square, pieces: Sequence[FrequencyPiece]
     ) -> bool:
         """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
 
@@ -275,11 +272,7 @@ def with_proofs(
     if not proposed or not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
     at_home = [
-        replace(
-            loop,
-            desired=Fraction(desired),
-            bandwidth=Fraction(bandwidth),
-        )
+        replace(loop, desired=Fraction(desired), bandwidth=Fraction(bandwidth))
         for loop in loops
         if loop.environment.name == home
     ]

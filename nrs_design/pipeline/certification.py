@@ -172,10 +172,7 @@ def meets_goals(result: Result) -> bool:
 
 
 def certificate_of(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    certification: Certification,
-    points: str = "",
+    loaded: LoadedSpec, designed: Designed | None, certification: Certification, points: str = ""
 ) -> Certificate | None:
     """Return what may be written to a file; None if nothing was shown."""
     if not certification.statements:
@@ -226,9 +223,7 @@ def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
 
 
 def assemble_spec(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    scale: Fraction = Fraction(1),
+    loaded: LoadedSpec, designed: Designed | None, scale: Fraction = Fraction(1)
 ) -> SwitchedSystem:
     """Assemble either kind of spec, with its ranges stretched by a scale."""
     from nrs_design.loop.assemble import assemble, assemble_matrices

@@ -22,10 +22,7 @@ if TYPE_CHECKING:
 
 
 # What other kinds of specs are for.
-_FOR_KIND = {
-    "robot": "`nrs-design robot`",
-    "switched-system": "`nrs-design certify-switching`",
-}
+_FOR_KIND = {"robot": "`nrs-design robot`", "switched-system": "`nrs-design certify-switching`"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,8 +43,8 @@ def run_proof_margins(
     """Find the margins that a command asks for; the decay rate is not optimized.
 
     `margin`: those of ranges, delay, period and disturbances; of ranges alone, a spec must have
-    some. `shortest_dwell`: that of the time between switches, in continuous time, where nothing else
-    changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
+    some. `shortest_dwell`: that of the time between switches, in continuous time without longest
+    dwell times. Else a `DesignError`.
     """
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin, find_shortest_dwell

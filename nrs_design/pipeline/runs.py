@@ -157,9 +157,7 @@ def run_interaction_of(
 
 
 def run_comparison(
-    loaded: LoadedSpec,
-    limits: Limits,
-    progress: Progress = silent,
+    loaded: LoadedSpec, limits: Limits, progress: Progress = silent
 ) -> tuple[SwitchedSystem, tuple[MethodRun, ...]]:
     """Compare the LMI, which comes first, with the gradient iteration on the exact modes."""
     from nrs_design.search.certify import certify

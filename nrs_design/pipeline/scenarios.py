@@ -267,9 +267,7 @@ class WorstCase:
 
 
 def run_worst_case(
-    designed: Designed,
-    certificate: Certificate | None = None,
-    progress: Progress = silent,
+    designed: Designed, certificate: Certificate | None = None, progress: Progress = silent
 ) -> WorstCase:
     """Let an adversary choose everything that the spec leaves open, and keep the worst runs.
 

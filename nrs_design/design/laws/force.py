@@ -97,15 +97,7 @@ def analyze_approach(
     if isinstance(task.axis, ContinuousAxis) and task.plant.actuator_ranges.fixed:
         loops = ranged_loops(task.axis, controller.law, task.contacts(given), {})
     return ForceAnalysis(
-        controller.name,
-        achieved,
-        stiffness,
-        loop,
-        approach,
-        left,
-        peak,
-        forward,
-        loops=loops,
+        controller.name, achieved, stiffness, loop, approach, left, peak, forward, loops=loops
     )
 
 

@@ -15,11 +15,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
-from nrs_design.design.impedance_optimum import (
-    ImpedanceLoop,
-    ImpedanceProblem,
-    impedance_cost,
-)
+from nrs_design.design.impedance_optimum import ImpedanceLoop, ImpedanceProblem, impedance_cost
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
     Choice,
@@ -28,12 +24,7 @@ from nrs_design.design.laws.law import (
     goals_of,
     naming,
 )
-from nrs_design.design.measures import (
-    CREEP_MEASURES,
-    HAND_MEASURES,
-    IMPEDANCE_MEASURES,
-    Measure,
-)
+from nrs_design.design.measures import CREEP_MEASURES, HAND_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.errors import DesignError

@@ -56,9 +56,7 @@ class Task:
         return axis_of(self.spec, self.plant, self.pd, self.sensor)
 
     def corners(
-        self,
-        given: ControllerSpec,
-        spring: Fraction = Fraction(0),
+        self, given: ControllerSpec, spring: Fraction = Fraction(0)
     ) -> tuple[ContactCorner, ...]:
         """Return where a controller is measured."""
         assert given.environment is not None  # Of a controller with contact.

@@ -134,9 +134,9 @@ def optimize_impedance(
     is Hurwitz at the nominal stiffness.
     """
     coarse, fine = (_objective(problem, nodes, violation) for nodes in (_FEW_NODES, NODES))
-    bounds = problem.mass_bounds, problem.damping_bounds
-    free = (low != high for low, high in bounds)
-    u, v, cost = lowest_on_square(coarse, fine, tuple(free))
+    mass, damping = problem.mass_bounds, problem.damping_bounds
+    free = mass[0] != mass[1], damping[0] != damping[1]
+    u, v, cost = lowest_on_square(coarse, fine, free)
     if not np.isfinite(cost):
         raise DesignError(
             f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "

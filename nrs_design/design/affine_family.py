@@ -24,8 +24,8 @@ from nrs_design.proof.exact import is_hurwitz_polynomial
 ZERO, ONE = Fraction(0), Fraction(1)
 
 Polynomial = Any  # A `flint.fmpq_poly`
-Square = Callable[..., Polynomial]  # Of polynomials: another one, of second degree in them
-# Of parameters: numerator and denominator of a response, or a characteristic polynomial alone.
+Square = Callable[..., Polynomial]  # A function of polynomials, of second degree in them
+# From parameters to numerator and denominator, or to a characteristic polynomial alone.
 Response = Callable[[Mapping[str, Fraction]], tuple[Polynomial, ...]]
 
 
@@ -34,11 +34,11 @@ class FrequencyPiece(NamedTuple):
 
     low: Fraction
     high: Fraction
-    inverse: bool = False  # Whether it is of one over the frequencies
+    inverse: bool = False  # The piece is in the inverse of the squared frequency
 
 
 def everywhere(middle: Fraction = Fraction(100)) -> tuple[FrequencyPiece, FrequencyPiece]:
-    """Return all frequencies: those up to one, and those from it on."""
+    """Return all frequencies, in two pieces."""
     return FrequencyPiece(ZERO, middle), FrequencyPiece(ZERO, 1 / middle, inverse=True)
 
 
@@ -49,7 +49,7 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polyn
         at({name: (r.low, r.high)[k] for k, (name, r) in zip(end, ranges.items(), strict=True)})
         for end in ends
     ]
-    # Not the middle, where what is odd about it would not be seen.
+    # In the middle an odd error would cancel.
     shares = [Fraction(1, i + 3) for i in range(len(ranges))]
     inside = at(
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
@@ -65,7 +65,7 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polyn
 
 
 def is_stable_over(poles: Response, ranges: Mapping[str, Interval]) -> bool:
-    """Tell whether the roots of a polynomial are shown to be on the left in a whole box.
+    """Tell whether a polynomial is shown to be Hurwitz in a whole box.
 
     Where none of the polynomials has a root on the imaginary axis, nor at infinity, all have as
     many on the left as those at the corners.
@@ -90,7 +90,7 @@ class Squares:
         above: Sequence[tuple[Polynomial, ...]] | None = None,
         square: Square | None = None,
     ) -> None:
-        """Take what is squared at the corners; one is above if nothing is given."""
+        """Square denominators at the corners, and numerators; without these, one."""
         sides = [side for side in (below, above) if side is not None]
         self._grids = [squared_over(side, square) for side in sides]
         self._size = max(len(p) for grid in self._grids for p in grid)
@@ -106,7 +106,7 @@ class Squares:
         return cls(below, above)
 
     def bound(self, piece: FrequencyPiece, limit: Fraction | None = None) -> Fraction | None:
-        """Return what the quotient is nowhere above in the box and a piece of the frequencies.
+        """Return a bound on the quotient in the box and in a piece of the frequencies.
 
         The search ends below the limit, if there is one; None where nothing is shown.
         """
@@ -120,7 +120,7 @@ class Squares:
         return all(bound is not None and bound <= limit for bound in found)
 
     def vanish_nowhere(self, pieces: Sequence[FrequencyPiece]) -> bool:
-        """Tell whether the squares, which nothing is above, are shown to be nowhere zero."""
+        """Tell whether the denominators are shown to vanish nowhere."""
         return all(self.bound(piece) is not None for piece in pieces)
 
     def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
@@ -185,7 +185,7 @@ def polynomial(*coefficients: Fraction) -> Polynomial:
 
 
 def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
-    """Return the motor at parameters, and what makes polynomials affine in all of them.
+    """Return the motor at parameters, and the factor that makes polynomials affine in them.
 
     Values are by name, ``Km`` or ``tau``; those that are not given are nominal.
     """

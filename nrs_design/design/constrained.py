@@ -21,7 +21,7 @@ from nrs_design.design.impedance_optimum import (
 from nrs_design.design.measures import CREEP_MEASURES, Measure
 from nrs_design.errors import DesignError
 
-# How near, relative to it, a gain is to a bound that holds it.
+# Largest relative distance of a gain from its active bound.
 _ON_A_BOUND = 1e-3
 
 
@@ -57,7 +57,7 @@ def best_rounding(
     requirement: Requirement,
     candidates: tuple[Iterable[float], Iterable[float]],
 ) -> tuple[float, float] | None:
-    """Return the cheapest pair of rounded gains that meets all goals; None if there is none."""
+    """Return the cheapest pair of rounded gains that meets all goals, or None."""
     pairs = [pair for pair in product(*candidates) if meets(requirement, *pair)]
     return min(pairs, key=lambda pair: float(impedance_cost(problem, *pair)), default=None)
 
@@ -96,7 +96,7 @@ def _unreachable(
 
 
 def _remedy(goals: str, problem: ImpedanceProblem, Mt: float, Bt: float) -> str:
-    """Say what may help: other bounds, where the best gains lie on one."""
+    """Advise other goals, and other bounds where the best gains lie on a bound."""
     gains = {"Mt": (Mt, problem.mass_bounds), "Bt": (Bt, problem.damping_bounds)}
     held = [
         name

@@ -35,8 +35,8 @@ class ForceLoop:
 
     gain: float  # ``Kp``, rad/(N m)
     poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
-    damping_ratio: float  # Of the dominant pair
-    natural_frequency: float  # Of the dominant pair, rad/s
+    damping_ratio: float  # Damping ratio of the dominant pair
+    natural_frequency: float  # Frequency of the dominant pair, rad/s
 
 
 def force_loop_response(motion: TransferFunction, stiffness: float, gain: float) -> ForceLoop:
@@ -124,8 +124,8 @@ _REST = 1e-9
 class Approach:
     """How the limit is reached."""
 
-    offset: Offset = "none"  # What is added to the correction
-    velocity: float = 0.0  # At which the axis arrives, rad/s
+    offset: Offset = "none"  # Position added to the correction
+    velocity: float = 0.0  # Velocity of arrival, rad/s
     force: float = 1.0  # Fd, and the force at the switch, N m
     # Ki of a PI controller in rad/(N m s), for the peak; 0 is a proportional one.
     integral: float = 0.0
@@ -159,7 +159,7 @@ def peak_force(
     lead = _lead(motion, approach)
     A, C = controllable_form(motion.numerator, motion.denominator)
     n = len(C)
-    # The rates of the motion loop on a ramp are constant; the command then jumps by -e, or not.
+    # On a ramp the rates of the motion loop are constant; then the command may jump by -e.
     start = np.zeros(n + 1)
     start[0] = approach.velocity / C[0]
     start[n - 1] -= lead if approach.offset == "measured" else 0.0

@@ -62,7 +62,7 @@ class ImpedanceLoop:
 
     @property
     def drawn(self) -> FloatArray:
-        """What the spring adds to the denominator of L: Kt times that of ``G Ze H``, over s."""
+        """The part of the denominator of L from the spring: Kt times that of ``G Ze H``, over s."""
         return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
 
@@ -87,13 +87,13 @@ def characteristic_polynomials(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArr
 # and the optimal Bt within 3e-4. With fewer the search looks for where to start.
 NODES, _FEW_NODES = 256, 64
 _BLOCK = 256
-# Above every cost: what misses a goal is worse than all that meets it.
+# Above every cost, so that a missed goal is worse than any cost.
 MISSED = 1e6
 
 
 @dataclass(frozen=True)
 class ImpedanceProblem:
-    """What the admittance is chosen for."""
+    """Loop, bounds and weights of the choice of an admittance."""
 
     loop: ImpedanceLoop  # Motion loop and nominal environment
     desired: float  # Desired impedance Zdes, N m s/rad, positive
@@ -152,7 +152,7 @@ def optimize_impedance(
 def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost of arrays of Mt and Bt, by so many frequencies."""
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    # That of a hand with a mass is improper, so it is no transfer function.
+    # The impedance of a hand with a mass is improper, hence no transfer function.
     above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * above / below
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)

@@ -39,7 +39,7 @@ def bound_ratio(
     limit: Fraction | None = None,
     most: int = MOST,
 ) -> Fraction | None:
-    """Return what a quotient of polynomials is nowhere above in the unit box; None if not shown.
+    """Return an upper bound on a quotient of polynomials in the unit box; None without one.
 
     Neither is negative in the box; Bernstein coefficients come in the order of indices, so many in
     each direction. The box with the highest bound is halved until the quotient has a bound, and
@@ -87,7 +87,7 @@ class _Box:
     below: Balls
 
     def bound(self) -> Fraction | None:
-        """Return what the quotient is not above in the box; None if that is not shown."""
+        """Return an upper bound on the quotient in the box; None without one."""
         if not all(a > 0 for a in self.below.flat):
             return None
         ratios: Balls = self.above / self.below
@@ -95,7 +95,7 @@ class _Box:
         return max(ZERO, fraction_of(max(ratio.upper() for ratio in ratios.flat)))
 
     def values(self) -> Iterator[Fraction]:
-        """Yield zero, and what the quotient is not below at each vertex."""
+        """Yield zero, and a lower bound on the quotient at each vertex."""
         yield ZERO
         for corner in product((0, -1), repeat=self.below.ndim):
             if self.below[corner] > 0:
@@ -120,7 +120,7 @@ def _halved(values: Balls, axis: int) -> tuple[Balls, ...]:
 
 
 def _changes(values: Balls) -> list[float]:
-    """Return how much coefficients differ along each direction, as a share of the largest."""
+    """Return the spread of coefficients along each direction, relative to the largest."""
     numbers = np.array([float(v.mid()) for v in values.flat]).reshape(values.shape)
     largest = np.abs(numbers).max() or 1.0
     return [np.ptp(numbers, axis).max() / largest for axis in range(values.ndim)]

@@ -76,7 +76,7 @@ def passive_band(
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(ZERO, None)
     places = product(range(3), repeat=len(ranges))
-    # None is zero at every frequency: passive, and on the border of it.
+    # A zero polynomial is passive, on the border.
     grid = {at: P for at, P in zip(places, real_parts(axis, law, ranges), strict=True) if P}
     if any(P[0] <= 0 for P in grid.values()):
         return PassiveBand(ZERO, None)
@@ -112,7 +112,7 @@ def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
 
 
 def first_root(P: Polynomial) -> Enclosed | None:
-    """Return numbers between which the smallest positive root is, or None if there is none.
+    """Return bounds on the smallest positive root, or None without one.
 
     Ball arithmetic isolates all roots rigorously, multiple ones as well. P is not zero at zero.
     """

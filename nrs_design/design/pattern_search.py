@@ -101,7 +101,7 @@ def _onto_square(w: FloatArray) -> FloatArray:
 def snap(
     objective: Objective, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Move points within 0.01 of an edge onto it where that costs nothing; return their costs too.
+    """Move points near an edge onto the edge where the cost stays; return costs too.
 
     An objective that is flat near an edge lets rounding hide the last step there.
     """
@@ -117,7 +117,7 @@ def snap(
 
 
 def lowest_minima(values: FloatArray, most: int) -> NDArray[np.intp]:
-    """Return where no neighbor undercuts a finite value, the lowest first, so many at most."""
+    """Return the places of local minima, the lowest first, `most` at most."""
     padded = np.pad(values, 1, constant_values=np.inf)
     local = np.isfinite(values) & (values <= padded[:-2]) & (values <= padded[2:])
     places = np.flatnonzero(local)

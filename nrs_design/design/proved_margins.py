@@ -71,7 +71,7 @@ class RangedLoop:
     axis: ContinuousAxis  # From which the modes follow
     law: CompliantLaw  # With the gains that ship
     environment: Environment  # With any linear law
-    ranges: Mapping[str, Interval]  # Where ``Km`` and ``tau`` are
+    ranges: Mapping[str, Interval]  # Ranges of ``Km`` and ``tau``
     desired: Fraction = ONE  # Desired impedance, N m s/rad
     bandwidth: Fraction = ONE  # Highest frequency of the command, rad/s
 
@@ -83,7 +83,7 @@ class RangedLoop:
 
     @cached_property
     def stable(self) -> bool:
-        """Whether the loop is shown to be stable in the whole box."""
+        """True if the loop is proved stable in the whole box."""
         return self._stays_stable(ONE)
 
     def holds(self, measure: Measure, value: Fraction) -> bool:
@@ -201,7 +201,7 @@ class RangedLoop:
     def _nowhere_zero(
         self, share: Interval, square: Square, pieces: Sequence[FrequencyPiece]
     ) -> bool:
-        """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
+        """Tell whether C and a share of ``N - D`` cancel nowhere on the axis."""
 
         def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
             opened, closed = self._cut(values)
@@ -245,7 +245,7 @@ def ranged_loops(
     environments: Sequence[Environment],
     ranges: Mapping[str, Interval],
 ) -> tuple[RangedLoop, ...]:
-    """Return the loops of a controller in all its contacts; none where one has too many ranges."""
+    """Return the loops of a controller in its contacts; none with too many ranges."""
     loops = tuple(RangedLoop(axis, law, environment, ranges) for environment in environments)
     return loops if all(len(loop.box) <= _RANGES for loop in loops) else ()
 
@@ -257,7 +257,7 @@ def with_proofs(
     desired: float = 1.0,
     bandwidth: float = 1.0,
 ) -> tuple[Achieved, ...]:
-    """Return measured values with what is proved of them over all ranges: a second's work.
+    """Return worst values with their proofs over the ranges, in about a second.
 
     The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
     the environment that the gains are designed for. They are of impedance controllers alone.
@@ -293,9 +293,9 @@ def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
 
 
 def _proposed(found: Achieved) -> Iterator[Fraction]:
-    """Yield values, the best first: as it is shown, the goal, and what is a little worse."""
+    """Yield values, the best first: the shown one, the goal, and slightly worse ones."""
     wanted = found.goal
-    # What nothing limits at the corners has no value to propose.
+    # An infinite value at the corners gives no proposal.
     slacks = _SLACK if isfinite(found.value) else ()
     upper, scale = found.measure.upper, found.measure.exact_scale
     context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)

@@ -40,8 +40,8 @@ class MotionLoopResponse:
     """What a closed motion loop really does."""
 
     poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
-    damping_ratio: float  # Of the dominant pair
-    natural_frequency: float  # Of the dominant pair, rad/s
+    damping_ratio: float  # Damping ratio of the dominant pair
+    natural_frequency: float  # Frequency of the dominant pair, rad/s
     overshoot: float  # Of the unit step response, as a fraction of its final value, zeros included
     # Lowest frequency where the gain has fallen by ``sqrt(2)``, rad/s; infinite if none.
     bandwidth: float

@@ -17,11 +17,11 @@ Array = NDArray[np.float64]
 
 # How far a coordinate moves at first, and at least.
 REGION, SMALLEST_REGION = 0.25, 1e-3
-# A constraint that is missed by one adds so much to the cost.
+# Added cost of a constraint violated by one.
 PENALTY = 10.0
 # A step is kept if it brings this share of what was predicted; from the other on, the region grows.
 KEPT, GOOD = 0.1, 0.6
-# What is less is no improvement.
+# Least improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
 # Slopes that were wrong by more than this share are found again.
@@ -30,7 +30,7 @@ WRONG = 0.012
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """What is known at a point."""
+    """Values and slopes at a point."""
 
     x: Array  # Shape (n,)
     values: Array  # Shape (k,). Of the constraints; those that are not negative are met.
@@ -39,7 +39,7 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class ConstrainedProblem:
-    """What is to be cheap, and what is to be met."""
+    """Cost and constraints."""
 
     cost: Callable[[Array], float]  # Quick
     evaluate: Callable[[Array, Array], Evaluation]  # At a point, given what is expected; takes long

@@ -55,10 +55,10 @@ class CertifiedOptimum:
     """The gains that were found, with their proof."""
 
     result: Result  # Of the spec with these gains; its certificate has been checked exactly
-    gains: Written  # What a spec would say of the free ones
+    gains: Written  # Free gains, as a spec writes them
     cost: float  # Summed over the controllers
     free_cost: float  # The least without goals of the certificate
-    # The best decay rate there in floating point, 1/s; None where it was not looked for.
+    # Best decay rate of these gains in floating point, 1/s; None without a search.
     free_rate: float | None
     tried: int  # Designs whose rate was found
     # Gains that `design.free` names and that are on a bound, and on which.
@@ -73,7 +73,7 @@ def run_certified_optimum(
     These the design has; they are taken where any function proves the goals of them.
     """
     with placed(designed.loaded):
-        wanted_age(designed)  # Refuses what is not modelled.
+        wanted_age(designed)  # Refuses ages outside the model.
     try:
         return find_certified_optimum(designed, analysis, progress)
     except DesignError:
@@ -160,7 +160,7 @@ class _Search:
         raise self._unreachable(found.last, in_floats=rooms != ROOMS[0])
 
     def _check_steerable(self) -> None:
-        """Refuse what no form for all modes could prove, whatever the gains."""
+        """Refuse systems without a common form, for any gains."""
         from nrs_design.search.rate_slope import may_have_slope
 
         wide = self.gains.designed
@@ -210,13 +210,13 @@ class _Search:
     def _certified(self, design: ControllerDesign) -> Result | None:
         """Certify the spec with a design; None if a goal that steers is not met."""
         designed = replace(self.given, design=design)
-        # Where the first proof falls short, other gains are nearer than other functions.
+        # After a failed proof, other gains cost less than other functions.
         limits = replace(search_limits(designed.spec), decay_rate=None)
         result = certify_design(designed.loaded, designed, limits=limits)
         return result if meets_goals(result) else None
 
     def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
-        """Say which goal gains miss, and how near they come."""
+        """Name the missed goal, and the nearest gains."""
         worst = self.constraints[int(np.argmin(last.values))]
         value, wanted = float(last.values.min()), self.wanted.get(worst.key)
         reached = worst.number(value)

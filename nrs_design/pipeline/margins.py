@@ -25,11 +25,11 @@ MARGIN_BUDGET = 10.0
 
 @dataclass(frozen=True, slots=True)
 class ProofMargins:
-    """How far a proof reaches, as far as that was asked for."""
+    """Margins of a proof; None without a request."""
 
-    loop: MarginBrackets | None = None  # Of delay, period and disturbances
-    box: Bracket | None = None  # Of the declared ranges
-    dwell: Bracket | None = None  # Of the time between switches
+    loop: MarginBrackets | None = None  # Margins of delay, period and disturbances
+    box: Bracket | None = None  # Margin of the ranges
+    dwell: Bracket | None = None  # Margin of the dwell time
 
 
 def run_proof_margins(
@@ -40,7 +40,7 @@ def run_proof_margins(
     margin: bool,
     shortest_dwell: bool,
 ) -> ProofMargins:
-    """Find the margins that a command asks for; the decay rate is not optimized.
+    """Find the requested margins, without optimizing the decay rate.
 
     `margin`: those of ranges, delay, period and disturbances; of ranges alone, a spec must have
     some. `shortest_dwell`: that of the time between switches, in continuous time without longest
@@ -55,7 +55,7 @@ def run_proof_margins(
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
-    # Of many searches, for each a proof is enough, whatever its decay rate.
+    # Each of many searches needs a proof only, with any decay rate.
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
     decide = partial(certify, limits=quick)
     loop = box = dwell = None
@@ -92,7 +92,7 @@ def _refuse_box(result: Result) -> None:
 
 
 def _run_loop(result: Result, limits: Limits, progress: Progress) -> MarginBrackets | None:
-    """Find how far delay, period and disturbances stretch; None where a spec has none of them."""
+    """Find the margins of delay, period and disturbances; None without these."""
     from nrs_design.search.margin import MarginBrackets
 
     if result.designed is None or not _has_loop(result):
@@ -161,7 +161,7 @@ def _refuse_dwell(result: Result) -> None:
             path=loaded.path,
             remedy="declare a dwell_time, and certify that",
         )
-    assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
+    assert loaded.spec.kind != "robot"  # A robot spec has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():
         raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)
     if len(system.lasting_modes()) < len(system.modes):

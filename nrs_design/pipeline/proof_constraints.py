@@ -1,4 +1,4 @@
-"""What a proof would show of a design, in floating point, and how that changes with the gains."""
+"""Provable numbers of a design in floating point, and their slopes."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 STEP = 1e-3
 # The value where floating point finds no number.
 NOTHING = -1e4
-# A rate that only has to be positive is at least so much, 1/s.
+# Least decay rate, 1/s.
 LEAST_RATE = 1e-2
-# Roundings take a little: so much more is asked for of a rate, and less of a bound.
+# Reserve for roundings: of a rate, and of a bound.
 ROOM = (5e-4, 4e-3)
 
 # Of a system, about what is expected, and what it may take: what is found; None if nothing is.
@@ -37,8 +37,8 @@ Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue 
 class ConstraintValue:
     """A number of a design, held against what is wanted."""
 
-    value: float  # Not negative where it is met; one is what is wanted
-    change: Callable[[SwitchedSystem], float]  # By how much it is larger for a system nearby
+    value: float  # Not negative if met; one is the scale
+    change: Callable[[SwitchedSystem], float]  # Change of the value for a system nearby
     said: str  # The number, for people
 
 
@@ -46,11 +46,11 @@ class ConstraintValue:
 class ProofConstraint:
     """A number that a proof is to show."""
 
-    key: str  # Of the goal
+    key: str  # Key of the goal
     title: str  # For people
     unit: str
     find: Find
-    number: Callable[[float], float]  # That a value stands for, in SI units
+    number: Callable[[float], float]  # Number for a value, in SI units
 
 
 def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
@@ -83,7 +83,7 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
 
 def force_constraint(wanted: float) -> ProofConstraint:
     """Return the constraint on the least bound on the force, in N m, under all disturbances."""
-    share: float | None = None  # Of the disturbances, that was the best last time
+    share: float | None = None  # Best share of the disturbances in the last solution
 
     def find(
         system: SwitchedSystem, expected: float | None, allowance: Allowance
@@ -111,7 +111,7 @@ def force_constraint(wanted: float) -> ProofConstraint:
 def constraints_of(
     goals: GoalsSpec | None, room: float = 0.0, room_of_bounds: float = 0.0
 ) -> tuple[ProofConstraint, ...]:
-    """Return what the goals ask of a proof: a decay first, without which there is none.
+    """Return the constraints of the goals, the decay first.
 
     So much more is asked for of a rate, as a share, and so much less of a bound.
     """

@@ -26,10 +26,10 @@ _NAMES = ("sha256", "_id", "schema")
 SHORT = 20
 _EXACT = "_exact"
 
-# Words that are verdicts, and how the names of numbers begin that are claimed.
+# Verdicts, and first parts of names of claimed numbers.
 _VERDICTS = frozenset({"proved", "refuted", "exists", "impossible"})
 _CLAIMED = ("claim", "proved", "refuted", "certified", "kept_up_to", "decay_rate_exact")
-# What an answer with a certificate may hold beside what that shows: how it was found.
+# Facts about the search, which an answer may hold beside its certificate.
 _BESIDE = frozenset(
     {"schema", "spec", "spec_sha256", "method", "attempts", "relief"}
     | {"decay_rate_limit", "decay_rate_unit"}
@@ -38,15 +38,15 @@ _BESIDE = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class PointAnswer:
-    """What came of one point."""
+    """Answer of one point."""
 
-    values: tuple[str, ...]  # Of the fields, in their order
+    values: tuple[str, ...]  # One for each field
     code: int  # As the command ends with
     # What the spec of the point means, the command and the version of this program, hashed.
     key: str = ""
     result: Mapping[str, Any] | None = None  # The JSON document, without times and places of files
-    certificate: str = ""  # Text of its file, if there is one
-    error: Mapping[str, Any] | None = None  # What is wrong, if that kept it from an answer
+    certificate: str = ""  # Text of the certificate, if any
+    error: Mapping[str, Any] | None = None  # Error instead of an answer
 
 
 def read_answers(file: Path) -> dict[tuple[str, ...], PointAnswer]:
@@ -99,7 +99,7 @@ def _claims(said: object) -> bool:
 
 
 def flat(document: object, name: str = "") -> Iterator[tuple[str, Cell]]:
-    """Yield each number and word of a JSON document with its dotted name.
+    """Yield each value of a JSON document with its dotted name.
 
     Items of a list are called by their ``name``, else counted from 0.
     """

@@ -36,19 +36,19 @@ from nrs_design.spec.controllers import IntegralControllerSpec
 class ForceAnalysis(AbstractControllerAnalysis):
     """One force controller."""
 
-    stiffness: float  # Of nominal contact, in N m/rad
+    stiffness: float  # Stiffness of nominal contact, in N m/rad
     loop: ForceLoop  # Closed in nominal contact
-    # How the limit of the spec on the force is reached: at the largest velocity.
+    # Approach to the force limit of the spec, at the largest velocity.
     approach: Approach
-    # What is left of the force error then, over the force; of the law as declared.
+    # Lasting force error over the force, of the declared law.
     steady_error: float
     peak: float | None  # Largest force then, in N m; None without offset
-    # What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
+    # Factor of Kp times the stiffness in the open loop: G, or ``(s + Ki/Kp)/s G``.
     forward: TransferFunction
 
 
 def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
-    """Return the Kp that the spec gives, or the one with the damping ratio that it wants."""
+    """Return the given Kp, or the Kp with the damping ratio of the spec."""
     if given.proportional_gain is not None:
         return to_float32(given.proportional_gain.exact)
     stiffness = task.stiffness(given)

@@ -41,14 +41,14 @@ class TorqueAnalysis(AbstractControllerAnalysis):
 
     @property
     def passive_text(self) -> str:
-        """Whether it is passive, in words; the margin is rounded down."""
+        """``yes`` or ``no`` with the margin, rounded down."""
         if self.margin is None:
             return "not decided"
         return f"{'yes' if self.margin > 0 else 'no'}, {lower(self.margin)}"
 
 
 def analyze(task: Task, given: TorqueImpedanceSpec, controller: Controller) -> TorqueAnalysis:
-    """Return what a controller makes of its joint."""
+    """Return gains and passivity of a controller."""
     drive, sampling = task.plant.drive, task.spec.sampling
     assert drive is not None, "such a controller has a robot that takes torques"
     assert sampling is not None, "such a robot is modelled in the sampled loop"

@@ -9,45 +9,9 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import parse_spec, read_spec
 from tests.support import words_of
+from tests.tables import spec_text
 
-TORQUES = """\
-kind: interaction-design
-name: constant-inertia
-torque_interface:
-  inertia: {nominal: 0.2 kg*m^2, range: [0.05 kg*m^2, 0.6 kg*m^2], varies: false}
-  friction: 0.5 N*m*s/rad
-limits: {velocity: 8 deg/s, torque: 3 N*m, bandwidth: 2 Hz}
-environments:
-  tissue: {model: elastic, stiffness: {nominal: 42 N*m/rad, range: [17 N*m/rad, 45 N*m/rad]}}
-controllers:
-  soft: &soft
-    type: torque-impedance
-    environment: tissue
-    stiffness: 30 N*m/rad
-    damping: 3 N*m*s/rad
-  firm:
-    type: torque-impedance
-    environment: tissue
-    stiffness: 60 N*m/rad
-    damping: 5 N*m*s/rad
-switching: arbitrary
-sampling: {period: 1 ms, delay: 0}
-contact: kept
-""".replace(" &soft", "")
-LATE = """\
-kind: interaction-design
-name: late
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: 43 N*m/rad}
-controllers:
-  only: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
-switching: arbitrary
-sampling: {period: 2 ms, delay: 0, latency: {range: [2.4 ms, 3.6 ms], varies: false}}
-contact: kept
-"""
+TORQUES, LATE = spec_text("constant-inertia"), spec_text("constant-latency")
 
 
 def read(tmp_path, text):

@@ -67,8 +67,7 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polyn
 def is_stable_over(poles: Response, ranges: Mapping[str, Interval]) -> bool:
     """Tell whether a polynomial is shown to be Hurwitz in a whole box.
 
-    Where none of the polynomials has a root on the imaginary axis, nor at infinity, all have as
-    many on the left as those at the corners.
+    Where no polynomial has a root on the imaginary axis or at infinity, all are as at the corners.
     """
     corners = corners_in(poles, ranges)
     if len({P.degree() for (P,) in corners}) > 1 or not all(_is_hurwitz(P) for (P,) in corners):
@@ -108,7 +107,7 @@ class Squares:
     def bound(self, piece: FrequencyPiece, limit: Fraction | None = None) -> Fraction | None:
         """Return a bound on the quotient in the box and in a piece of the frequencies.
 
-        The search ends below the limit, if there is one; None where nothing is shown.
+        The search ends below the limit, if any; None without a bound.
         """
         sides = [self._between(grid, piece) for grid in self._grids]
         below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))

@@ -21,8 +21,7 @@ from nrs_design.design.impedance_optimum import (
 from nrs_design.design.measures import CREEP_MEASURES, Measure
 from nrs_design.errors import DesignError
 
-# Largest relative distance of a gain from its active bound.
-_ON_A_BOUND = 1e-3
+_ON_A_BOUND = 1e-3  # Largest relative distance of a gain from its active bound
 
 
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:

@@ -21,8 +21,7 @@ from nrs_design.design.measures import (
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 
-# How far to look for a damping.
-_DECADES = 4
+_DECADES = 4  # How far to look for a damping
 
 
 def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -> Iterator[Doubt]:

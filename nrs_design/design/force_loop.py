@@ -1,9 +1,7 @@
 """Proportional force control on top of the motion loop (thesis 6.3.3.1), and its offset (6.41).
 
-The axis arrives at a constant velocity, and force control takes over when the force is Fd. What is
-left of the force error depends on the offset X_i alone: with none the loop forgets where contact
-was, with the reference it keeps the lead of the command before the position, with the measured
-position it keeps nothing.
+The axis arrives at a constant velocity, and force control takes over at the force Fd. The lasting
+error depends on the offset X_i: none, the reference, or the measured position.
 """
 
 from __future__ import annotations
@@ -116,8 +114,7 @@ def _reachable(motion: TransferFunction) -> str:
     return f"{min(reached):.5g} to {min(1.0, max(reached)):.5g}"
 
 
-# How far G(0) may be from 1 by rounding.
-_REST = 1e-9
+_REST = 1e-9  # How far G(0) may be from 1 by rounding
 
 
 @dataclass(frozen=True, slots=True)

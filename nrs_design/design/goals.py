@@ -61,8 +61,7 @@ class Achieved:
     goal: float | None = None  # Goal of the spec, in SI units
     # A proved bound for constant values in the ranges; None without a proof.
     proved: Fraction | None = None
-    # True without ranges, and where the measure is worst at a corner.
-    everywhere: bool = False
+    everywhere: bool = False  # True without ranges, and where the measure is worst at a corner
 
     @property
     def bound(self) -> Fraction | None:
@@ -333,8 +332,7 @@ class Requirement(AbstractRequirement):
         return tan(min(self.bandwidth * half, pi / 2 * _NEARLY)) / half
 
 
-# Half the sampling rate is at infinity.
-_NEARLY = 1 - 1e-9
+_NEARLY = 1 - 1e-9  # Half the sampling rate is at infinity
 
 
 @dataclass(frozen=True)

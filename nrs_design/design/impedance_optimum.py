@@ -87,8 +87,7 @@ def characteristic_polynomials(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArr
 # and the optimal Bt within 3e-4. With fewer the search looks for where to start.
 NODES, _FEW_NODES = 256, 64
 _BLOCK = 256
-# Above every cost, so that a missed goal is worse than any cost.
-MISSED = 1e6
+MISSED = 1e6  # Above every cost, so that a missed goal is worse than any cost
 
 
 @dataclass(frozen=True)
@@ -114,10 +113,9 @@ class ImpedanceProblem:
 def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> FloatArray:
     """Evaluate the cost of thesis 6.4-6.7, written as a mean over frequency.
 
-    ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
-    divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
-    thesis prints a sum, whose value would depend on the number of frequencies. Mt and Bt broadcast;
-    stability is not checked.
+    ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``, by the midpoint
+    rule with `NODES` frequencies; the sum of the thesis would depend on their number. Mt and Bt
+    broadcast; stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return _cost_by(problem, NODES)(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)

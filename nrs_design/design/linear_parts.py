@@ -56,8 +56,7 @@ class LinearParts:
     # measured motion.
     actuator: LinearPart
     motion_loop: LinearPart
-    # Laws, from measured force to added command.
-    controllers: tuple[LinearPart, ...]
+    controllers: tuple[LinearPart, ...]  # Laws, from measured force to added command
     force_filter: LinearPart | None  # Through which the laws get the force
     contacts: tuple[LinearPart, ...]  # Contacts, from motion to force
 

@@ -20,8 +20,7 @@ from nrs_design.design.transfer import FloatArray, frequencies, hurwitz, product
 from nrs_design.loop.cut_loop import AbstractAxis, Place, ProcessorAxis
 from nrs_design.models.contact import AbstractLinearLaw
 
-# Names of the polynomials of a mode.
-_OPENED, _CLOSED, _FREE = "opened", "closed", "free"
+_OPENED, _CLOSED, _FREE = "opened", "closed", "free"  # Names of the polynomials of a mode
 # A virtual mass in kg m^2 that is next to none.
 _LEAST = 1e-12
 _KEPT = 512
@@ -47,10 +46,9 @@ class LoopFamily:
     def stiffness_limit(self, Mt: float, Bt: float) -> float:
         """Return the largest stiffness in N m/rad up to which the closed loop is stable throughout.
 
-        The characteristic polynomial is ``A + k B``: a root can reach the right half plane only
-        across the imaginary axis, so the limit is the smallest positive ``k = -A/B`` that is real
-        there. None crosses at zero, where a positive k only adds to what is positive. Infinite if
-        no stiffness destabilizes the loop, 0 if it is unstable however soft the contact is.
+        The characteristic polynomial is ``A + k B``, so the limit is the smallest positive
+        ``k = -A/B`` that is real on the imaginary axis. Infinite if no stiffness destabilizes the
+        loop, 0 if it is unstable however soft the contact is.
         """
         (free,), (contact,) = self._polynomials(_CLOSED, np.array([Mt]), np.array([Bt]))
         rows = free[None], contact[None]

@@ -157,8 +157,7 @@ IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
 HAND_MEASURES = (TRANSPARENCY, HAND_EFFORT)
 # Taken with the designed gains only, in the environment that they are designed for.
 AT_HOME = (IMPEDANCE_ERROR, FORCE_ERROR, *HAND_MEASURES)
-# Only with known errors of the force signal.
-CREEP_MEASURES = (CREEP, CREEP_ANGLE)
+CREEP_MEASURES = (CREEP, CREEP_ANGLE)  # Only with known errors of the force signal
 # What rises or falls with each parameter throughout, as long as the loop is stable: the worst is at
 # a corner.
 MONOTONE = (*CREEP_MEASURES, FORCE_ERROR)

@@ -1,18 +1,13 @@
-"""Up to which frequency a displayed admittance is passive, exactly, over the ranges.
+"""Frequencies up to which a displayed admittance is passive, exactly, over the ranges.
 
-A surgeon who holds the tool applies a torque and meets the admittance ``Y = N/D`` from it to the
-velocity of the tool: what the law makes of the torque, and what the torque itself turns of a motor
-with a load. D is the characteristic polynomial of the assembled mode that touches nothing, and
-``D + b N`` that with a damper b, so both are exact. Y is passive at omega where
-``Re N conj(D) >= 0``, a polynomial in ``x = omega^2`` with rational coefficients. Its roots are
-isolated rigorously, without a grid. With a strictly proper motion loop of relative degree
-one and no load, Y has relative degree two with an inertia, so it is never passive at all
-frequencies (thesis 7): what counts is the band.
+The hand applies a torque and meets the admittance ``Y = N/D`` from torque to velocity. D is the
+characteristic polynomial of the assembled mode in the air, ``D + b N`` that with a damper b, so
+both are exact. Y is passive at omega where ``Re N conj(D) >= 0``, a polynomial in ``x = omega^2``
+whose roots are isolated rigorously. With a strictly proper motion loop of relative degree one and
+without load, an inertia is not passive at all frequencies (thesis 7): the band counts.
 
-Ranges: times the time constant, N and D are affine in each of Km and tau, so the polynomial is of
-second degree at most in each. Anywhere in the box it is a mean of its Bernstein coefficients: where
-all of these are positive, so is it. Each parameter is unknown but constant; that is what a
-frequency is about.
+Times the time constant, N and D are affine in Km and tau. Where all Bernstein coefficients of the
+polynomial are positive, it is positive in the box. Each parameter is unknown but constant.
 """
 
 from __future__ import annotations
@@ -48,8 +43,7 @@ from nrs_design.proof.spectrum import is_stable
 # How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
 # often twice as far.
 SHARE, STEPS = Fraction(1, 10**5), 40
-# Decimals of a frequency in rad/s.
-DIGITS = 6
+DIGITS = 6  # Decimals of a frequency in rad/s
 
 Enclosed = tuple[Fraction, Fraction]
 

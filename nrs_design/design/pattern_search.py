@@ -20,8 +20,7 @@ from nrs_design.design.transfer import FloatArray
 
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
-# Size of the pattern at which a search ends.
-TOLERANCE = 1e-5
+TOLERANCE = 1e-5  # Size of the pattern at which a search ends
 # Coordinates u of the valley, minima along it from which the search starts, and its first pattern.
 _ACROSS, _STARTS, _STEP = 25, 4, (1 / 96, 1 / 160)
 # Coordinates v of the valley: at first, and around the best of them in each round.

@@ -55,8 +55,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
-# Ranges at once.
-_RANGES = 4
+_RANGES = 4  # Ranges at once
 # Beyond the worst value at the corners: between them it may be worse.
 _SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
 _DIGITS = 4

@@ -1,9 +1,9 @@
 """Rational transfer functions in s, and many polynomials at once.
 
-By hand, as designs need many polynomials at once, where NumPy takes one after the other, and no
-matplotlib, which python-control loads; `to_control` is the way over to it. One polynomial is a
-row, highest power first, all of one length. On ``s = j omega`` an even power is real, so peaks and
-crossings are roots of polynomials in ``x = omega^2``: no grid of frequencies decides anything.
+By hand, as NumPy takes one polynomial after the other, and python-control (`to_control`) loads
+matplotlib. One polynomial is a row, highest power first, all of one length. On ``s = j omega`` an
+even power is real, so peaks and crossings are roots of polynomials in ``x = omega^2``: no grid of
+frequencies decides anything.
 """
 
 from __future__ import annotations
@@ -86,9 +86,8 @@ def controllable_form(
 def hurwitz(coefficients: ArrayLike) -> BoolArray:
     """Tell which of many polynomials, one per row, have all roots in the open left half plane.
 
-    Routh's array, run on all polynomials at once, where `numpy.roots` takes one. A leading
-    coefficient that is exactly zero lowers the degree, so an admittance without mass needs no case
-    of its own. The highest power is first; the zero polynomial counts as not Hurwitz.
+    Routh's array for all polynomials at once, the highest power first. Leading zeros lower the
+    degree, as of an admittance without mass; the zero polynomial is not Hurwitz.
     """
     table = np.asarray(coefficients, dtype=np.float64)
     rows = table.reshape(-1, table.shape[-1])

@@ -15,17 +15,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# How far a coordinate moves at first, and at least.
-REGION, SMALLEST_REGION = 0.25, 1e-3
-# Added cost of a constraint violated by one.
-PENALTY = 10.0
+REGION, SMALLEST_REGION = 0.25, 1e-3  # How far a coordinate moves at first, and at least
+PENALTY = 10.0  # Added cost of a constraint violated by one
 # A step is kept if it brings this share of what was predicted; from the other on, the region grows.
 KEPT, GOOD = 0.1, 0.6
 # Least improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
-# Slopes that were wrong by more than this share are found again.
-WRONG = 0.012
+WRONG = 0.012  # Slopes that were wrong by more than this share are found again
 
 
 @dataclass(frozen=True, eq=False)

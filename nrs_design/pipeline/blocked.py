@@ -1,9 +1,7 @@
 """The lines of a spec that keep it from a proof, where the verdict is inconclusive.
 
-The gains that are given are changed together first. Then each line alone is changed to what asks
-for the least, the spec is taken all the way again, and where it is proved then, so is as much of
-what the line asks for as can be. What counts as proved has passed the exact check, of exactly the
-changed spec.
+The given gains are changed together first. Then each line alone is changed to its weakest form, and
+bisection finds the strongest one with a proof. Each changed spec passes the exact check.
 """
 
 from __future__ import annotations
@@ -35,18 +33,15 @@ from nrs_design.spec.relaxations import (
     iterate_relaxations,
 )
 
-# Share of the search budget; the last step may exceed it.
-SHARE = 0.4
-# Share of this for gains.
-GAINS = 0.4
+SHARE = 0.4  # Share of the search budget; the last step may exceed it
+GAINS = 0.4  # Share of this for gains
 # Of the rest, up to where it may be spent on finding lines about numbers and words, on how far they
 # go, and on what is left out whole.
 FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
 MOST_LINES = 24
-# Printed lines, beside the first and the last.
-SHOWN = 3
+SHOWN = 3  # Printed lines, beside the first and the last
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,15 +285,13 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
 
 
 def _said(item: Proved, path: Path) -> str:
-    said = " together with ".join(_place(line, path) for line in item.lines)
+    said = " together with ".join(
+        f"{path}:{line.place.line}: {line_text(line)}" for line in item.lines
+    )
     said += "; gains are designed anew then, and differ" if item.new_gains else ""
     if item.needs and any(line.changes_model for line in item.lines):
         said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
     return said
-
-
-def _place(line: Blocking, path: Path) -> str:
-    return f"{path}:{line.place.line}: {line_text(line)}"
 
 
 def line_text(line: Blocking) -> str:

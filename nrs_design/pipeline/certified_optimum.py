@@ -1,10 +1,8 @@
 """The cheapest gains whose proof meets the goals of a certificate: all controllers jointly.
 
-The cost is that of `nrs_design.design.impedance_optimum`, summed over the controllers. What a
-proof shows is known at a design, with its slope (`nrs_design.search.rate_slope`); between two
-designs it is taken as linear in the logarithms of the gains, within a region that shrinks where
-that was wrong. Gains are rounded to the digits that ship, and the proof of these is searched and
-checked as that of any spec.
+The cost is summed over the controllers. Between two designs, what a proof shows is taken as linear
+in the logarithms of the gains (`nrs_design.search.rate_slope`), within a region that shrinks where
+that was wrong. The proof of rounded gains is searched and checked as that of any spec.
 """
 
 from __future__ import annotations
@@ -37,17 +35,14 @@ from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, constraints_of,
 from nrs_design.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
     from nrs_design.spec import Quantity
 
-# Roundings that are proved at most.
-MOST_ROUNDINGS = 4
+MOST_ROUNDINGS = 4  # Roundings that are proved at most
 # Where the proof falls short, there is more room for roundings.
 ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
-# A goal that is missed by no more than this share may be met by rounding.
-NEAR = 5e-3
+NEAR = 5e-3  # A goal that is missed by no more than this share may be met by rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +82,8 @@ def find_certified_optimum(
 ) -> CertifiedOptimum:
     """Choose the free gains of all controllers at once, with their proof; at least one goal steers.
 
-    Where a mass may be zero, the best without masses and the best with them are compared: without,
-    a force acts at once, else a sample later. Where none are proved, the `DesignError` names the
-    nearest.
+    Where a mass may be zero, the best without and with masses are compared: without, a force acts
+    at once, else a sample later. Without a proof, the `DesignError` names the nearest.
     """
     with placed(designed.loaded):
         wide, items = designed, analysis
@@ -202,18 +196,13 @@ class _Search:
                 near.append((rank, one))
         near.sort(key=lambda pair: pair[0])
         for _, one in near[:MOST_ROUNDINGS]:
-            design = self.gains.shipping(one, last.x)
-            if (result := self._certified(design)) is not None:
+            designed = replace(self.given, design=self.gains.shipping(one, last.x))
+            # After a failed proof, other gains cost less than other functions.
+            limits = replace(search_limits(designed.spec), decay_rate=None)
+            result = certify_design(designed.loaded, designed, limits=limits)
+            if meets_goals(result):
                 return result, one
         return None
-
-    def _certified(self, design: ControllerDesign) -> Result | None:
-        """Certify the spec with a design; None if a goal that steers is not met."""
-        designed = replace(self.given, design=design)
-        # After a failed proof, other gains cost less than other functions.
-        limits = replace(search_limits(designed.spec), decay_rate=None)
-        result = certify_design(designed.loaded, designed, limits=limits)
-        return result if meets_goals(result) else None
 
     def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
         """Name the missed goal, and the nearest gains."""

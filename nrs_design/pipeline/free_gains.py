@@ -1,8 +1,7 @@
-"""The gains that a proof may choose, of all controllers, as one point.
+"""The free gains of all controllers as one point of logarithms.
 
-A point holds their logarithms: virtual mass and damping of the impedance controllers, and what
-``design.free`` names beside. Of its gains, either all virtual masses are zero, or none: they are
-different laws.
+They are Mt and Bt of the impedance controllers, and the gains in ``design.free``. All virtual
+masses are zero, or none is: these are different laws.
 """
 
 from __future__ import annotations
@@ -43,10 +42,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # A virtual mass that may be zero is zero, or at least this share of the largest.
 LEAST_MASS = Fraction(1, 1000)
-# Points whose problems are cached.
-MOST_KNOWN = 64
-# Tolerance of a goal in floating point.
-MISSED = 1e-6
+MOST_KNOWN = 64  # Points whose problems are cached
+MISSED = 1e-6  # Tolerance of a goal in floating point
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from nrs_design.spec import GainSpec, Quantity
 
 
-# Largest distance of a logarithm from a bound that counts as the bound.
-CLOSE = 1e-6
-# The same after a search.
-NEAR = 1e-3
-# The gains that are free by bounds of their own.
-BOUNDED = ("Mt", "Bt")
+CLOSE = 1e-6  # Largest distance of a logarithm from a bound that counts as the bound
+NEAR = 1e-3  # The same after a search
+BOUNDED = ("Mt", "Bt")  # The gains that are free by bounds of their own
 
 
 @dataclass(frozen=True)

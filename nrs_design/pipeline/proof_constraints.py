@@ -20,14 +20,10 @@ if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.spec import GoalsSpec
 
-# How far a coordinate moves for a slope.
-STEP = 1e-3
-# The value where floating point finds no number.
-NOTHING = -1e4
-# Least decay rate, 1/s.
-LEAST_RATE = 1e-2
-# Reserve for roundings: of a rate, and of a bound.
-ROOM = (5e-4, 4e-3)
+STEP = 1e-3  # How far a coordinate moves for a slope
+NOTHING = -1e4  # The value where floating point finds no number
+LEAST_RATE = 1e-2  # Least decay rate, 1/s
+ROOM = (5e-4, 4e-3)  # Reserve for roundings: of a rate, and of a bound
 
 # Of a system, about what is expected, and what it may take: what is found; None if nothing is.
 Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue | None"]

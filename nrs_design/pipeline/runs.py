@@ -43,9 +43,9 @@ def run_design(
 ) -> Designed | None:
     """Build the plant of a spec and choose its gains; None for given matrices.
 
-    This is the one rule for which gains a spec has: those of the least cost. Where goals of a proof
-    choose the free ones, these are `recorded` in a certificate that holds for this very spec, or
-    the cheapest that are proved to meet the goals, if such are found.
+    This is the one rule for the gains of a spec: those of the least cost. Where goals of a proof
+    choose the free ones, these are `recorded` in a certificate for this very spec, or the cheapest
+    that are proved to meet the goals, if any.
     """
     designed = design_at_least_cost(loaded)
     if designed is None:

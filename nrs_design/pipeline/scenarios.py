@@ -173,8 +173,7 @@ class CertifiedBound:
     output: str
     unit: str
     level: float  # Not below what is proved
-    # Events of the run outside the proof; empty if the bound holds.
-    uncovered: tuple[str, ...]
+    uncovered: tuple[str, ...]  # Events of the run outside the proof; empty if the bound holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -232,9 +231,6 @@ def hold_rate(
     )
 
 
-_REMEDY = "use `simulate` without --worst-case, with a scenario for each controller"
-
-
 @dataclass(frozen=True, slots=True)
 class WorstCase:
     """Worst runs of an adversary, beside limits and certified bounds."""
@@ -287,7 +283,7 @@ def run_worst_case(
         with placed(designed.loaded):
             raise DesignError(
                 f"no worst case is searched for this spec: {message}",
-                remedy=_REMEDY,
+                remedy="use `simulate` without --worst-case, with a scenario for each controller",
                 at=("controllers",),
             ) from error
     return WorstCase(

@@ -38,10 +38,8 @@ class ForceAnalysis(AbstractControllerAnalysis):
 
     stiffness: float  # Stiffness of nominal contact, in N m/rad
     loop: ForceLoop  # Closed in nominal contact
-    # Approach to the force limit of the spec, at the largest velocity.
-    approach: Approach
-    # Lasting force error over the force, of the declared law.
-    steady_error: float
+    approach: Approach  # Approach to the force limit of the spec, at the largest velocity
+    steady_error: float  # Lasting force error over the force, of the declared law
     peak: float | None  # Largest force then, in N m; None without offset
     # Factor of Kp times the stiffness in the open loop: G, or ``(s + Ki/Kp)/s G``.
     forward: TransferFunction

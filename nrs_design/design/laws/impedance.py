@@ -58,8 +58,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Where the displayed admittance is passive, exactly, over the ranges of the motor; None for a
     # sampled law.
     band: PassiveBand | None = None
-    # Common lever arm of all contacts, in m; None without one.
-    lever_arm: float | None = None
+    lever_arm: float | None = None  # Common lever arm of all contacts, in m; None without one
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with their proofs over the ranges."""

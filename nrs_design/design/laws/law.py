@@ -150,12 +150,9 @@ class LawDesign:
     """Functions that choose and analyze the gains of one law."""
 
     choose: Callable[[Task, Any], Choice]  # Gives the law for a task and the spec of a controller
-    # Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
-    # controller (`given`), and the controller with the gains that ship; None where nothing is
-    # measured.
+    # Takes task, spec of the controller and controller with its gains; None without measures.
     analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
-    # Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
-    # where that is not known.
+    # Takes the same, and yields too stiff contacts with advice; None where that is not known.
     too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
 
 
@@ -176,8 +173,7 @@ def choose_given(task: Task, given: ControllerSpec) -> Choice:
     return law.of(gains), None
 
 
-# For laws with given gains and without measures.
-GIVEN = LawDesign(choose_given)
+GIVEN = LawDesign(choose_given)  # For laws with given gains and without measures
 
 
 @contextmanager

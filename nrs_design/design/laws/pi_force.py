@@ -19,10 +19,8 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.spec.controllers import IntegralControllerSpec
 
-# Time constants until 2 % are left, as in thesis 4.14.
-_SETTLED = 4.0
-# Largest relative rounding error of a pole.
-_NEAR = 1e-6
+_SETTLED = 4.0  # Time constants until 2 % are left, as in thesis 4.14
+_NEAR = 1e-6  # Largest relative rounding error of a pole
 
 
 def with_integral(motion: TransferFunction, zero: float) -> TransferFunction:

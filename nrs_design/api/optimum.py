@@ -175,7 +175,6 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "passive_up_to_rad_s": passive and lower_float(passive),
         "not_passive_at_rad_s": broken and upper_float(broken),
         "goals": goals_summary(item),
-        "responses": responses_summary(item),
         "units": {
             "Mt": unit("kg*m^2"),
             "Bt": unit("N*m*s/rad"),
@@ -194,23 +193,6 @@ def _sensor(designed: Designed) -> dict[str, Any]:
         "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
         "unit": unit("N*m"),
     }
-
-
-def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
-    """Return the goals for frequency responses, and what is proved of them, in SI units."""
-    return [
-        {
-            "goal": found.key,
-            "wanted": found.wanted,
-            "limit": float(found.limit),
-            "at_most": None if found.above is None else upper_float(found.above),
-            "at_least": None if found.below is None else lower_float(found.below),
-            "unit": found.unit,
-            "shown": found.said,
-            "status": found.ends,
-        }
-        for found in item.responses
-    ]
 
 
 def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:

@@ -16,13 +16,11 @@ from nrs_design.facts.certification import (
     blocked_facts,
     certification_facts,
     margins_facts,
-    radius_facts,
 )
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
-    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.certification import Certification
 
 
@@ -87,26 +85,18 @@ def certify_switching(
             blocked = find_blocked(result, limits, step)
     with progress(f"margins of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)
-    growth = None
-    if result.certification.system.time == "discrete":
-        from nrs_design.pipeline.radius import bound_radius
-
-        growth = bound_radius(result.certification, limits)
     relief = find_relief(result)
     steps = _next_steps(result, **asked)
 
     def facts() -> dict[str, Any]:
         return (
             certification_facts(result, written)
-            | radius_facts(growth)
             | margins_facts(margins)
             | {"relief": list(relief), "next_steps": list(steps)}
             | ({} if blocked is None else blocked_facts(blocked, loaded.path))
         )
 
     def show() -> None:
-        if growth is not None:
-            say(f"  {_growth_words(growth)}")
         found = blocked is not None and blocked.proved
         for line in relief if wants_details() or not found else ():
             say(f"  {line}")
@@ -114,7 +104,7 @@ def certify_switching(
             # Reports are slow to load, and a bare proof says nothing that only they can.
             from nrs_design.reporting.remedies import margin_lines
 
-            for line in margin_lines(margins, loaded.spec):
+            for line in margin_lines(margins):
                 say(f"  {line}")
         if blocked is not None:
             from nrs_design.pipeline.blocked import blocked_lines
@@ -126,25 +116,6 @@ def certify_switching(
             say(f"next: {line}")
 
     return Answer(facts, show, exit_codes.OF_VERDICT[str(result.certification.verdict)])
-
-
-def _growth_words(radius: RadiusBounds) -> str:
-    """Say between which numbers the largest growth per step is; with -v, how each is shown."""
-    from nrs_design.proof.bounds import rounded_down, rounded_up
-
-    low, high = "at least (no word was found)", "at most (no bound was found)"
-    if radius.lower is not None and radius.word is not None:
-        signal = ", ".join(
-            name + (f" {count} times" if count > 1 else "") for name, count in radius.word
-        )
-        shown = f", by {signal}, and again" if wants_details() else ""
-        low = f"at least {rounded_down(radius.lower)}{shown}"
-    if radius.upper is not None:
-        shown = f" ({radius.method})" if wants_details() else ""
-        high = f"at most {rounded_up(radius.upper)}{shown}"
-    if radius.gap is not None:
-        high += f"; {rounded_up(100 * radius.gap)} % apart"
-    return f"growth per step, rho: {low}; {high}"
 
 
 def _write(result: Result, path: Path | None) -> Path | None:

@@ -48,7 +48,6 @@ def optimize(spec: SpecFile) -> Answer:
         shown, found = Optimum(designed), None
         goals: list[CertifiedGoal] = []
         step("margins")
-        responses = shown.analysis.impedance
         if steering_goals(designed.spec):
             from nrs_design.certificates.goals import certified_goals
             from nrs_design.pipeline.certified_optimum import run_certified_optimum
@@ -58,7 +57,6 @@ def optimize(spec: SpecFile) -> Answer:
             assert found.result.designed is not None, "as it was designed before"
             shown = Optimum(found.result.designed)
             goals = [*certified_goals(shown.designed.spec, found.result.certificate)]
-            responses = shown.analysis.impedance
 
     def facts() -> dict[str, Any]:
         return shown.to_dict() | {"certified": found and _certified_facts(found, goals)}
@@ -71,9 +69,9 @@ def optimize(spec: SpecFile) -> Answer:
             _print_certified(shown, found)
             _print_freed(designed, shown, found)
 
-    proved = all(one.proved for item in responses for one in item.responses)
-    proved = proved and all(goal.met for goal in goals)
-    return design_answer(shown, responses, facts, show, proved=proved, judged=found is not None)
+    proved = all(goal.met for goal in goals)
+    items = shown.analysis.impedance
+    return design_answer(shown, items, facts, show, proved=proved, judged=found is not None)
 
 
 def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
@@ -86,8 +84,6 @@ def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) ->
         "cost": found.cost,
         "free_cost": found.free_cost,
         "free_decay_rate": found.free_rate,
-        "binds": [goal.key for goal in found.goals if goal.binds],
-        "prices": {goal.key: goal.price for goal in found.goals},
         "goals": [
             {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
             for goal in goals
@@ -116,10 +112,6 @@ def _print_certified(shown: Optimum, found: CertifiedOptimum) -> None:
             f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without goals "
             f"of a proof{rate}"
         )
-        for steered in found.goals:
-            tighter = steered.price_of_a_percent
-            price = "" if tighter is None else f": 1 % tighter costs about {tighter:.2g}"
-            say(f"{steered.key} {f'binds{price}' if steered.binds else 'does not raise the cost'}")
 
 
 def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> None:
@@ -139,8 +131,6 @@ def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> No
 
 
 def _print(shown: Optimum) -> None:
-    from nrs_design.design.measures import RESPONSE_MEANING
-
     items, name = shown.analysis.impedance, shown.designed.spec.name
     if wants_details():
         from nrs_design.reporting.formatting import polynomial_text
@@ -160,11 +150,6 @@ def _print(shown: Optimum) -> None:
     for line in _marks(items):
         say(line)
     _print_basis(items)
-    judged = [(item.name, found) for item in items for found in item.responses]
-    for controller, found in judged:
-        say(f"{controller}: {found.key}, {found.wanted}: {found.ends.upper()}: {found.said}")
-    if judged:
-        detail(RESPONSE_MEANING)
 
 
 def _cells(item: ImpedanceAnalysis) -> list[str]:

@@ -23,7 +23,7 @@ from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.cli.sweep_point import Job, PointAnswer
-    from nrs_design.sweeps.table import Row
+    from nrs_design.pipeline.sweep_table import Row
 
 # Commands that answer about one spec, with --json, and write nothing elsewhere.
 SWEPT = (
@@ -96,8 +96,8 @@ def sweep(
     """
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
-    from nrs_design.sweeps.grid import read_grid
-    from nrs_design.sweeps.table import chosen, flat
+    from nrs_design.pipeline.sweep_grid import read_grid
+    from nrs_design.pipeline.sweep_table import chosen, flat
 
     if table is not None:
         check_place(table, SWEEP)
@@ -187,7 +187,7 @@ class _Swept:
 
     def table(self) -> str:
         """Return all facts as CSV: a row for each point, a column for each number or word."""
-        from nrs_design.sweeps.table import facts_in
+        from nrs_design.pipeline.sweep_table import facts_in
 
         text, names = io.StringIO(), facts_in(self.rows)
         writer = csv.writer(text, lineterminator="\n")
@@ -200,7 +200,7 @@ class _Swept:
 
     def show(self, wanted: list[str] | None) -> None:
         """Print what was set, how it ended, and some facts; by default those that differ."""
-        from nrs_design.sweeps.table import cell_text, telling
+        from nrs_design.pipeline.sweep_table import cell_text, telling
 
         # The column `answer` shows the verdict.
         names = wanted or [name for name in telling(self.rows) if name != "verdict"]

@@ -14,13 +14,13 @@ from typing import Any
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary
 from nrs_design.errors import ClockError, NrsDesignError
+from nrs_design.pipeline.sweep_grid import Grid
 from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
-from nrs_design.sweeps.grid import Grid
 
 # Facts that differ from run to run, concern other specs, or give advice about the file.
-LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps", "rho"})
+LEFT_OUT = frozenset({"seconds", "certificate", "files", "path", "blocked_by", "next_steps"})
 
 
 @dataclass(frozen=True, slots=True)

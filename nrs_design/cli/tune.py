@@ -83,12 +83,10 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "name": item.name,
                 "Kp": item.Kp,
                 "B": item.B,
-                "stable_below_in_the_air": item.border,
                 "passivity_margin": None if item.margin is None else lower_float(item.margin),
                 "units": {
                     "Kp": unit("N*m/rad"),
                     "B": unit("N*m*s/rad"),
-                    "stable_below_in_the_air": unit("N*m/rad"),
                     "passivity_margin": unit("N*m*s/rad"),
                 },
             }

@@ -8,22 +8,25 @@ those at its corners, the last parameter turning fastest. Polynomials are those 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import prod
 from typing import Any, NamedTuple, Self
 
-from nrs_design.design.largest_ratio import MOST, LargestRatio, bernstein, largest_ratio
+from nrs_design.design.largest_ratio import bernstein, bound_ratio
 from nrs_design.errors import InternalError
+from nrs_design.loop.cut_loop import ContinuousAxis, Place
+from nrs_design.loop.hull import rational
 from nrs_design.models.interval import Interval
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
-from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.exact import is_hurwitz_polynomial
 
 ZERO, ONE = Fraction(0), Fraction(1)
 
 Polynomial = Any  # A `flint.fmpq_poly`
-Square = Callable[..., Polynomial]  # Of polynomials: another one, of second degree in them
+Square = Callable[..., Polynomial]  # A function of polynomials, of second degree in them
+# From parameters to numerator and denominator, or to a characteristic polynomial alone.
+Response = Callable[[Mapping[str, Fraction]], tuple[Polynomial, ...]]
 
 
 class FrequencyPiece(NamedTuple):
@@ -31,39 +34,28 @@ class FrequencyPiece(NamedTuple):
 
     low: Fraction
     high: Fraction
-    inverse: bool = False  # Whether it is of one over the frequencies
+    inverse: bool = False  # The piece is in the inverse of the squared frequency
 
 
 def everywhere(middle: Fraction = Fraction(100)) -> tuple[FrequencyPiece, FrequencyPiece]:
-    """Return all frequencies: those up to one, and those from it on."""
+    """Return all frequencies, in two pieces."""
     return FrequencyPiece(ZERO, middle), FrequencyPiece(ZERO, 1 / middle, inverse=True)
 
 
-class Quotient(NamedTuple):
-    """A response at fixed parameters, as polynomials in s."""
-
-    above: Polynomial
-    below: Polynomial
-    poles: Polynomial = 0  # Whose roots are the poles of what is closed, if that is asked
-
-
-Response = Callable[[Mapping[str, Fraction]], Quotient]
-
-
-def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
+def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polynomial, ...]]:
     """Return a response at the corners of a box, of which it is a mean at a point inside."""
     ends = [*product((0, 1), repeat=len(ranges))]
     corners = [
         at({name: (r.low, r.high)[k] for k, (name, r) in zip(end, ranges.items(), strict=True)})
         for end in ends
     ]
-    # Not the middle, where what is odd about it would not be seen.
+    # In the middle an odd error would cancel.
     shares = [Fraction(1, i + 3) for i in range(len(ranges))]
     inside = at(
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
     )
     weights = [
-        as_fmpq(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
+        rational(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
         for end in ends
     ]
     for found, *at_corners in zip(inside, *corners, strict=True):
@@ -72,25 +64,20 @@ def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[Quotient]:
     return corners
 
 
-def is_stable_over(at: Response, ranges: Mapping[str, Interval], most: int = MOST) -> bool:
-    """Tell whether the poles of a response are shown to be on the left in a whole box.
+def is_stable_over(poles: Response, ranges: Mapping[str, Interval]) -> bool:
+    """Tell whether a polynomial is shown to be Hurwitz in a whole box.
 
-    At most so many Bernstein coefficients are looked at. Where none of the polynomials has a root
-    on the imaginary axis, nor at infinity, all have as many on the left as those at the corners.
+    Where no polynomial has a root on the imaginary axis or at infinity, all are as at the corners.
     """
-    poles = [corner.poles for corner in corners_in(at, ranges)]
-    if len({p.degree() for p in poles}) > 1 or not all(map(_is_hurwitz, poles)):
+    corners = corners_in(poles, ranges)
+    if len({P.degree() for (P,) in corners}) > 1 or not all(_is_hurwitz(P) for (P,) in corners):
         return False
-    return Squares([(p,) for p in poles]).vanish_nowhere(everywhere(), most)
+    return Squares(corners).vanish_nowhere(everywhere())
 
 
 def _is_hurwitz(P: Polynomial) -> bool:
     """Tell whether the roots of a polynomial are on the left."""
-    *rest, leading = (Fraction(int(c.p), int(c.q)) for c in P.coeffs())
-    n = len(rest)
-    rows = [[ONE * (j == i + 1) for j in range(n)] for i in range(n - 1)]
-    rows += [[-c / leading for c in rest]] * (n > 0)
-    return not rows or is_stable(RationalMatrix.from_rows(rows), Time.CONTINUOUS)
+    return is_hurwitz_polynomial([int(c) for c in reversed(P.numer().coeffs())])
 
 
 class Squares:
@@ -102,7 +89,7 @@ class Squares:
         above: Sequence[tuple[Polynomial, ...]] | None = None,
         square: Square | None = None,
     ) -> None:
-        """Take what is squared at the corners; one is above if nothing is given."""
+        """Square denominators at the corners, and numerators; without these, one."""
         sides = [side for side in (below, above) if side is not None]
         self._grids = [squared_over(side, square) for side in sides]
         self._size = max(len(p) for grid in self._grids for p in grid)
@@ -113,29 +100,31 @@ class Squares:
         """Return the square of a response over a box."""
         corners = corners_in(at, ranges)
         # Powers of s that all polynomials have cancel.
-        rest = min(zeros_at_rest(p) for corner in corners for p in corner[:2])
+        rest = min(zeros_at_rest(p) for corner in corners for p in corner)
         above, below = ([(corner[i].right_shift(rest),) for corner in corners] for i in (0, 1))
         return cls(below, above)
 
-    def largest(self, piece: FrequencyPiece, **search: Any) -> LargestRatio:
-        """Bound the largest quotient over the box and a piece of the frequencies."""
+    def bound(self, piece: FrequencyPiece, limit: Fraction | None = None) -> Fraction | None:
+        """Return a bound on the quotient in the box and in a piece of the frequencies.
+
+        The search ends below the limit, if any; None without a bound.
+        """
         sides = [self._between(grid, piece) for grid in self._grids]
         below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))
-        return largest_ratio(above, below, (3,) * self._parameters + (self._size,), **search)
+        return bound_ratio(above, below, (3,) * self._parameters + (self._size,), limit)
 
-    def stay_below(self, limit: Fraction, pieces: Sequence[FrequencyPiece], most: int) -> bool:
+    def stay_below(self, limit: Fraction, pieces: Sequence[FrequencyPiece]) -> bool:
         """Tell whether the quotient is shown to be nowhere above a limit."""
-        found = (self.largest(p, limit=limit, nearly=None, most=most).above for p in pieces)
-        return all(above is not None and above <= limit for above in found)
+        found = (self.bound(piece, limit) for piece in pieces)
+        return all(bound is not None and bound <= limit for bound in found)
 
-    def vanish_nowhere(self, pieces: Sequence[FrequencyPiece], most: int) -> bool:
-        """Tell whether the squares, which nothing is above, are shown to be nowhere zero."""
-        found = (self.largest(piece, nearly=None, most=most) for piece in pieces)
-        return all(one.above is not None for one in found)
+    def vanish_nowhere(self, pieces: Sequence[FrequencyPiece]) -> bool:
+        """Tell whether the denominators are shown to vanish nowhere."""
+        return all(self.bound(piece) is not None for piece in pieces)
 
     def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
-        ends = as_fmpq(piece.low), as_fmpq(piece.high)
+        ends = rational(piece.low), rational(piece.high)
         full = ([p[i] for i in range(self._size)] for p in grid)
         return [c for p in full for c in bernstein(p[::-1] if piece.inverse else p, *ends)]
 
@@ -191,11 +180,14 @@ def polynomial(*coefficients: Fraction) -> Polynomial:
     """Return the polynomial with some coefficients, the highest power first."""
     from flint import fmpq_poly
 
-    return fmpq_poly([as_fmpq(c) for c in reversed(coefficients)])
+    return fmpq_poly([rational(c) for c in reversed(coefficients)])
 
 
-def as_fmpq(number: Fraction) -> Any:
-    """Return a rational number of flint."""
-    from flint import fmpq
+def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
+    """Return the motor at parameters, and the factor that makes polynomials affine in them.
 
-    return fmpq(number.numerator, number.denominator)
+    Values are by name, ``Km`` or ``tau``; those that are not given are nominal.
+    """
+    nominal = axis.places[0].motor
+    gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
+    return Place(replace(nominal, gain=gain, time_constant=tau)), rational(tau)

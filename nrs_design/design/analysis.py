@@ -46,7 +46,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign | None:
-    """Return the PD that the root locus asks for, before any rounding or given value.
+    """Return the PD of the root locus, not rounded and without given values.
 
     None where the robot closes its own motion loop.
     """
@@ -96,10 +96,10 @@ E = TypeVar("E", bound=AbstractControllerAnalysis)
 class DesignAnalysis:
     """Everything a person wants to see beside the gains."""
 
-    # What the root locus asks for; None where the robot closes its own motion loop.
+    # The PD of the root locus; None where the robot closes its own motion loop.
     wanted: PdDesign | None
     motion: TransferFunction  # The motion loop G in use
-    motion_source: str  # Whether G follows from the PD gains, or the spec states it
+    motion_source: str  # ``designed`` or ``given``
     reached: MotionLoopResponse  # Poles, damping and overshoot that G really has
     # One for each controller that goals are for, law by law.
     measured: tuple[AbstractControllerAnalysis, ...]
@@ -127,7 +127,7 @@ class DesignAnalysis:
 
     @property
     def warnings(self) -> tuple[Doubt, ...]:
-        """What is doubtful about the spec and its design, and no goal speaks of it, worst first."""
+        """Doubts about the spec and its design that no goal settles, the worst first."""
         return worst_first(
             (*self.doubts, *(doubt for item in self.measured for doubt in item.doubts()))
         )

@@ -13,22 +13,15 @@ from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import NOT_COMPUTED, Requirement
 from nrs_design.design.impedance_optimum import (
-    NODES,
+    MISSED,
     ImpedanceProblem,
-    admittance_at,
     impedance_cost,
-    objective_of,
     optimize_impedance,
 )
 from nrs_design.design.measures import CREEP_MEASURES, Measure
-from nrs_design.design.pattern_search import search_square
-from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
-# Above every cost: what misses a goal is worse than all that meets it.
-_MISSED = 1e6
-# How near, relative to it, a gain is to a bound that holds it.
-_ON_A_BOUND = 1e-3
+_ON_A_BOUND = 1e-3  # Largest relative distance of a gain from its active bound
 
 
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
@@ -47,8 +40,8 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
     optimum = optimize_impedance(problem)
     if meets(requirement, optimum.Mt, optimum.Bt):
         return optimum
-    optimum = _cheapest(problem, requirement)
-    if optimum.cost >= _MISSED:
+    optimum = optimize_impedance(problem, requirement.violation)
+    if optimum.cost >= MISSED:
         raise _unreachable(problem, requirement, optimum.Mt, optimum.Bt)
     return optimum
 
@@ -63,28 +56,9 @@ def best_rounding(
     requirement: Requirement,
     candidates: tuple[Iterable[float], Iterable[float]],
 ) -> tuple[float, float] | None:
-    """Return the cheapest pair of rounded gains that meets all goals; None if there is none."""
+    """Return the cheapest pair of rounded gains that meets all goals, or None."""
     pairs = [pair for pair in product(*candidates) if meets(requirement, *pair)]
     return min(pairs, key=lambda pair: float(impedance_cost(problem, *pair)), default=None)
-
-
-def _cheapest(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
-    """Minimize the cost where all goals are met, else the violation of the worst goal."""
-    cost = objective_of(problem, NODES)
-
-    def objective(u: FloatArray, v: FloatArray) -> FloatArray:
-        values = cost(u, v)
-        stable = np.flatnonzero(np.isfinite(values))
-        missed = requirement.violation(*admittance_at(problem, u[stable], v[stable]))
-        # From 0 to 1, also where a corner is unstable and the violation is infinite.
-        part = 1 - 1 / (1 + np.maximum(missed, 0))
-        values[stable] = np.where(missed > 0, _MISSED + part, values[stable])
-        return values
-
-    mass, damping = problem.mass_bounds, problem.damping_bounds
-    u, v, value = search_square(objective, (mass[0] != mass[1], damping[0] != damping[1]))
-    (Mt,), (Bt,) = admittance_at(problem, np.array([u]), np.array([v]))
-    return ImpedanceOptimum(float(Mt), float(Bt), value)
 
 
 def _unreachable(
@@ -98,8 +72,8 @@ def _unreachable(
     )
     for measure, goal in requirement.goals:
         alone = replace(requirement, goals=((measure, goal),))
-        best = _cheapest(problem, alone)
-        if best.cost >= _MISSED:
+        best = optimize_impedance(problem, alone.violation)
+        if best.cost >= MISSED:
             return DesignError(
                 f"the goal {measure.goal}, {measure.goal_text(goal)}, cannot be met with {bounds}: "
                 f"the best is {_reached(alone, measure, best.Mt, best.Bt)}",
@@ -121,7 +95,7 @@ def _unreachable(
 
 
 def _remedy(goals: str, problem: ImpedanceProblem, Mt: float, Bt: float) -> str:
-    """Say what may help: other bounds, where the best gains lie on one."""
+    """Advise other goals, and other bounds where the best gains lie on a bound."""
     gains = {"Mt": (Mt, problem.mass_bounds), "Bt": (Bt, problem.damping_bounds)}
     held = [
         name

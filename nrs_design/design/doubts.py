@@ -21,12 +21,11 @@ from nrs_design.design.measures import (
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 
-# How far to look for a damping.
-_DECADES = 4
+_DECADES = 4  # How far to look for a damping
 
 
 def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -> Iterator[Doubt]:
-    """Yield what is beyond the usual limits, and no goal speaks of it: one line a controller.
+    """Yield one doubt about all unusual values of a controller that no goal limits.
 
     A goal for Ms or for the disk margin limits gain and phase together, so it speaks of both. It is
     advised only where it can be met: of values that are `provable`, or the worst of all ranges.
@@ -58,7 +57,7 @@ def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
         return False
     values = (item.value for item in achieved if item.measure == measure)
     if measure is IMPEDANCE_ERROR:
-        # Infinite where a spring is displayed at rest: that is what a spring is for.
+        # A spring displays an infinite impedance at rest, as is its purpose.
         return any(math.isfinite(v) and measure.violation(v, limit) > 0 for v in values)
     return any(not math.isnan(v) and measure.violation(v, limit) > 0 for v in values)
 

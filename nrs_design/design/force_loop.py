@@ -1,9 +1,7 @@
 """Proportional force control on top of the motion loop (thesis 6.3.3.1), and its offset (6.41).
 
-The axis arrives at a constant velocity, and force control takes over when the force is Fd. What is
-left of the force error depends on the offset X_i alone: with none the loop forgets where contact
-was, with the reference it keeps the lead of the command before the position, with the measured
-position it keeps nothing.
+The axis arrives at a constant velocity, and force control takes over at the force Fd. The lasting
+error depends on the offset X_i: none, the reference, or the measured position.
 """
 
 from __future__ import annotations
@@ -35,8 +33,8 @@ class ForceLoop:
 
     gain: float  # ``Kp``, rad/(N m)
     poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
-    damping_ratio: float  # Of the dominant pair
-    natural_frequency: float  # Of the dominant pair, rad/s
+    damping_ratio: float  # Damping ratio of the dominant pair
+    natural_frequency: float  # Frequency of the dominant pair, rad/s
 
 
 def force_loop_response(motion: TransferFunction, stiffness: float, gain: float) -> ForceLoop:
@@ -56,10 +54,7 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
     roots = poles(closed)
     zeta, wn = dominant_pair(roots)
     return ForceLoop(
-        gain=gain,
-        poles=tuple(complex(p) for p in roots),
-        damping_ratio=zeta,
-        natural_frequency=wn,
+        gain=gain, poles=tuple(complex(p) for p in roots), damping_ratio=zeta, natural_frequency=wn
     )
 
 
@@ -119,16 +114,15 @@ def _reachable(motion: TransferFunction) -> str:
     return f"{min(reached):.5g} to {min(1.0, max(reached)):.5g}"
 
 
-# How far G(0) may be from 1 by rounding.
-_REST = 1e-9
+_REST = 1e-9  # How far G(0) may be from 1 by rounding
 
 
 @dataclass(frozen=True, slots=True)
 class Approach:
     """How the limit is reached."""
 
-    offset: Offset = "none"  # What is added to the correction
-    velocity: float = 0.0  # At which the axis arrives, rad/s
+    offset: Offset = "none"  # Position added to the correction
+    velocity: float = 0.0  # Velocity of arrival, rad/s
     force: float = 1.0  # Fd, and the force at the switch, N m
     # Ki of a PI controller in rad/(N m s), for the peak; 0 is a proportional one.
     integral: float = 0.0
@@ -162,7 +156,7 @@ def peak_force(
     lead = _lead(motion, approach)
     A, C = controllable_form(motion.numerator, motion.denominator)
     n = len(C)
-    # The rates of the motion loop on a ramp are constant; the command then jumps by -e, or not.
+    # On a ramp the rates of the motion loop are constant; then the command may jump by -e.
     start = np.zeros(n + 1)
     start[0] = approach.velocity / C[0]
     start[n - 1] -= lead if approach.offset == "measured" else 0.0

@@ -1,13 +1,11 @@
-"""What a controller achieves at worst, beside what the spec asks for.
+"""Worst values of a controller, beside its goals.
 
-The loop is that of the modes that a certificate is about, cut where the law takes the force.
-Margins are taken in every contact: at the nominal values of the environment that the controller is
-designed for, and at all corners of the declared ranges of all its contacts and of the motor,
-sampled at every age of the force sample. Displayed impedance and force error are what the design is
-for: they are taken in the environment that it is designed for. The worst of a goal is also looked
-for at some points between the corners. All of it is floating point, and no proof: a goal is met
-where it is proved over all ranges, where nothing has a range, or where the measure rises or falls
-with each parameter throughout, so that a corner is the worst.
+The loop is that of the proved modes, cut where the law takes the force. Margins are taken in every
+contact, nominal and at all corners of the ranges of contact and motor, sampled at every age of the
+force sample; displayed impedance and force error in the contact of the design alone. The worst of a
+goal is also looked for between the corners. All of it is floating point, and no proof: a goal is
+met where it is proved over all ranges, where nothing has a range, or where a corner is surely the
+worst.
 """
 
 from __future__ import annotations
@@ -42,7 +40,7 @@ from nrs_design.loop.cut_loop import AbstractAxis, Place
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 
-# How far what is proved may be from the worst that was found, and be shown in its place.
+# Largest relative distance of a proved value from the worst found, to be shown instead.
 _NEAR = 0.02
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
@@ -60,21 +58,20 @@ class Achieved:
     measure: Measure  # What is measured
     value: float  # The worst value, in SI units
     where: str  # The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``
-    goal: float | None = None  # What the spec asks for, in SI units
-    # What no values in the ranges are worse than, each of them constant; None if not shown.
+    goal: float | None = None  # Goal of the spec, in SI units
+    # A proved bound for constant values in the ranges; None without a proof.
     proved: Fraction | None = None
-    # Whether it is the worst of all ranges: nothing has one, or the measure is worst at a corner.
-    everywhere: bool = False
+    everywhere: bool = False  # True without ranges, and where the measure is worst at a corner
 
     @property
     def bound(self) -> Fraction | None:
-        """What is proved, if that is the worst that was found but for a little."""
+        """The proved value, where it is close to the worst value found."""
         near = self.proved is not None and isclose(self.proved, self.value, rel_tol=_NEAR)
         return self.proved if near else None
 
     @property
     def text(self) -> str:
-        """The value as it is shown: a bound that is proved, else the worst that was found."""
+        """The shown value: a proved bound, else the worst value found."""
         return self.measure.text(self.value if self.bound is None else self.bound)
 
     @property
@@ -84,7 +81,7 @@ class Achieved:
             return GoalStanding.MET
         if (missed := self.measure.violation(self.value, self.goal)) > 0:
             return GoalStanding.MISSED
-        everywhere = self.everywhere and missed <= 0  # What is not computed is not met.
+        everywhere = self.everywhere and missed <= 0  # NaN is no success.
         return GoalStanding.MET if everywhere or self._is_proved else GoalStanding.NOT_JUDGED
 
     @property
@@ -112,8 +109,8 @@ class ContactCorner:
     label: str  # For people
     environment: str  # Its name
     contact: AbstractLinearLaw  # The environment there
-    place: Place  # Of the motor, and the age of the force sample
-    home: bool  # Whether this is the environment that the controller is designed for
+    place: Place  # Motor and age of the force sample
+    home: bool  # True for the environment of the design
     Kt: Fraction = Fraction(0)  # Spring of the admittance, N m/rad; zero is none
 
 
@@ -124,7 +121,7 @@ class AbstractRequirement(ABC):
     # From which the modes follow; None where no loop is cut at one place. What takes a loop is then
     # not computed: NaN.
     axis: AbstractAxis | None
-    corners: tuple[ContactCorner, ...]  # As `corners_of` gives them
+    corners: tuple[ContactCorner, ...]  # From `corners_of`
     goals: tuple[tuple[Measure, float], ...]  # Goals in SI units
 
     def values(self, measure: Measure, *gains: FloatArray) -> tuple[FloatArray, list[str]]:
@@ -184,7 +181,7 @@ class AbstractRequirement(ABC):
         return (corner for corner in self.corners if corner.home or measure not in measures.AT_HOME)
 
     def _is_one_point(self, measure: Measure) -> bool:
-        """Tell whether nothing has a range: ages of the force are taken one by one."""
+        """Tell whether nothing has a range; each age of the force counts alone."""
         found: dict[tuple[str, int], set[object]] = {}
         for corner in self._measured_at(measure):
             place = replace(corner.place, age=0, texts=())
@@ -328,15 +325,14 @@ class Requirement(AbstractRequirement):
 
     @property
     def _seen_bandwidth(self) -> float:
-        """The bandwidth on the axis of the loops; up to half the sampling rate, if there is one."""
+        """The bandwidth on the axis of the loops, at most half the sampling rate."""
         if self.axis is None or self.axis.period is None:
             return self.bandwidth
         half = float(self.axis.period) / 2
         return tan(min(self.bandwidth * half, pi / 2 * _NEARLY)) / half
 
 
-# Half the sampling rate is at infinity.
-_NEARLY = 1 - 1e-9
+_NEARLY = 1 - 1e-9  # Half the sampling rate is at infinity
 
 
 @dataclass(frozen=True)
@@ -346,7 +342,7 @@ class ForceRequirement(AbstractRequirement):
     law: CompliantLaw  # With the gains that ship
     # Closed motion loop G, from commanded to actual position, for the steady error.
     motion: TransferFunction
-    approach: Approach  # How the limit is reached, for the steady error
+    approach: Approach  # Approach to the force limit, for the steady error
 
     def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
         error = self.steady_error(corner.contact, corner.place)

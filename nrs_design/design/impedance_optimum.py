@@ -17,14 +17,7 @@ from numpy.typing import ArrayLike
 
 from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
-from nrs_design.design.pattern_search import (
-    Objective,
-    Points,
-    best_across,
-    lowest_minima,
-    refine,
-    snap,
-)
+from nrs_design.design.pattern_search import TOLERANCE, Objective, lowest_on_square
 from nrs_design.design.transfer import (
     BoolArray,
     FloatArray,
@@ -69,7 +62,7 @@ class ImpedanceLoop:
 
     @property
     def drawn(self) -> FloatArray:
-        """What the spring adds to the denominator of L: Kt times that of ``G Ze H``, over s."""
+        """The part of the denominator of L from the spring: Kt times that of ``G Ze H``, over s."""
         return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
 
@@ -91,18 +84,15 @@ def characteristic_polynomials(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArr
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
-# and the optimal Bt within 3e-4.
-NODES = 256
-_VALLEY_NODES = 64
+# and the optimal Bt within 3e-4. With fewer the search looks for where to start.
+NODES, _FEW_NODES = 256, 64
 _BLOCK = 256
-# Masses of the valley, minima along it from which the search starts, and its first pattern.
-_MASSES, _STARTS, _STEP = 25, 4, (1 / 96, 1 / 160)
-_STEP_TOLERANCE = 1e-5
+MISSED = 1e6  # Above every cost, so that a missed goal is worse than any cost
 
 
 @dataclass(frozen=True)
 class ImpedanceProblem:
-    """What the admittance is chosen for."""
+    """Loop, bounds and weights of the choice of an admittance."""
 
     loop: ImpedanceLoop  # Motion loop and nominal environment
     desired: float  # Desired impedance Zdes, N m s/rad, positive
@@ -123,36 +113,44 @@ class ImpedanceProblem:
 def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> FloatArray:
     """Evaluate the cost of thesis 6.4-6.7, written as a mean over frequency.
 
-    ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
-    divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
-    thesis prints a sum, whose value would depend on the number of frequencies. Mt and Bt broadcast;
-    stability is not checked.
+    ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``, by the midpoint
+    rule with `NODES` frequencies; the sum of the thesis would depend on their number. Mt and Bt
+    broadcast; stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
     return _cost_by(problem, NODES)(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
 
 
-def optimize_impedance(problem: ImpedanceProblem) -> ImpedanceOptimum:
+def optimize_impedance(
+    problem: ImpedanceProblem, violation: Objective | None = None
+) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the stable admittances within the bounds.
 
-    The best Bt of every Mt (with fewer frequencies, dense towards small Mt and in log Bt) makes a
-    valley; a pattern search with the full cost refines the lowest minima along it, and moves before
-    it shrinks, so that a minimum away from its start is still reached. The search is deterministic.
-    An optimum on a bound is returned exactly as the bound; stable is Hurwitz at the nominal
-    stiffness.
+    Where a violation is given, of Mt and Bt, the cost is minimized where it is not positive, or
+    else the violation: the cost is then `MISSED` at least. The search (`pattern_search`) is dense
+    towards small Mt and in log Bt. An optimum on a bound is returned exactly as the bound; stable
+    is Hurwitz at the nominal stiffness.
     """
-    objective = objective_of(problem, NODES)
-    found = refine(objective, _valley(problem), _STEP_TOLERANCE)
-    u, v, costs = snap(objective, found.u, found.v)
-    best = int(np.argmin(costs))
-    Mt, Bt = admittance_at(problem, u[best : best + 1], v[best : best + 1])
-    return ImpedanceOptimum(float(Mt[0]), float(Bt[0]), float(costs[best]))
+    coarse, fine = (_objective(problem, nodes, violation) for nodes in (_FEW_NODES, NODES))
+    mass, damping = problem.mass_bounds, problem.damping_bounds
+    free = mass[0] != mass[1], damping[0] != damping[1]
+    u, v, cost = lowest_on_square(coarse, fine, free)
+    if not np.isfinite(cost):
+        raise DesignError(
+            f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
+            f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
+            f"{problem.loop.contact.stiffness:.6g} {unit('N m/rad')}",
+            remedy="raise the upper bound of Bt or lower the lower bound of Mt",
+            at=("Bt",),
+        )
+    (Mt,), (Bt,) = _admittance_at(problem, np.array([u]), np.array([v]))
+    return ImpedanceOptimum(float(Mt), float(Bt), cost)
 
 
 def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost of arrays of Mt and Bt, by so many frequencies."""
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
-    # That of a hand with a mass is improper, so it is no transfer function.
+    # The impedance of a hand with a mass is improper, hence no transfer function.
     above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
     forward = frequency_response(problem.loop.motion, omega) * above / below
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
@@ -176,7 +174,7 @@ def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
     return cost
 
 
-def admittance_at(
+def _admittance_at(
     problem: ImpedanceProblem, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
@@ -184,41 +182,29 @@ def admittance_at(
     A u below the search's tolerance counts as the bound itself.
     """
     (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
-    u = np.where(u < _STEP_TOLERANCE, 0.0, u)
+    u = np.where(u < TOLERANCE, 0.0, u)
     Mt = np.where(u >= 1, high, low + (high - low) * u**3)
     Bt = np.where(v >= 1, most, least * (most / least) ** v)
     return Mt, Bt
 
 
-def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
+def _objective(problem: ImpedanceProblem, nodes: int, violation: Objective | None) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    cost = _cost_by(problem, nodes)
-    stabilizing = problem.stable or partial(stabilizes, problem.loop)
+    cost, stabilizing = (
+        _cost_by(problem, nodes),
+        problem.stable or partial(stabilizes, problem.loop),
+    )
 
-    def stable_cost(u: FloatArray, v: FloatArray) -> FloatArray:
-        Mt, Bt = admittance_at(problem, u, v)
+    def objective(u: FloatArray, v: FloatArray) -> FloatArray:
+        Mt, Bt = _admittance_at(problem, u, v)
         stable = stabilizing(Mt, Bt)
-        costs = np.full(len(Mt), np.inf)
-        costs[stable] = cost(Mt[stable], Bt[stable])
+        Mt, Bt = Mt[stable], Bt[stable]
+        costs, own = np.full(len(u), np.inf), cost(Mt, Bt)
+        if violation is not None:
+            missed = violation(Mt, Bt)
+            # From 0 to 1, also where a corner is unstable and the violation is infinite.
+            own = np.where(missed > 0, MISSED + 1 - 1 / (1 + np.maximum(missed, 0)), own)
+        costs[stable] = own
         return costs
 
-    return stable_cost
-
-
-def _valley(problem: ImpedanceProblem) -> Points:
-    """Return the starts of the search: the lowest minima of the best Bt of every Mt."""
-    bounds = problem.mass_bounds, problem.damping_bounds
-    free = [low != high for low, high in bounds]
-    u = np.linspace(0, 1, _MASSES) if free[0] else np.zeros(1)
-    v, costs = best_across(objective_of(problem, _VALLEY_NODES), u, moves=free[1])
-    if not np.isfinite(costs).any():
-        raise DesignError(
-            f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
-            f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
-            f"{problem.loop.contact.stiffness:.6g} {unit('N m/rad')}",
-            remedy="raise the upper bound of Bt or lower the lower bound of Mt",
-            at=("Bt",),
-        )
-    starts = lowest_minima(costs, _STARTS)
-    slope = np.gradient(v, u) if free[0] else np.zeros(1)
-    return Points(u[starts], v[starts], np.multiply(_STEP, free), slope[starts])
+    return objective

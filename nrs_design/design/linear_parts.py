@@ -3,10 +3,9 @@
 Parts are in continuous time and at nominal values. A closed loop is the feedback of these parts and
 of nothing else, but where what is touched acts on the motor (`load_inertia`).
 
-Open loops are those whose margins a design has: `nrs_design.loop.cut_loop` cuts the modes of a
-proof where the law takes the force. Two such modes, with the force and without it, differ by a
-column times a row, exactly: ``-B C``. With A of the mode without it, ``L = C (s I - A)^-1 B``, and
-``A - B C`` is the mode that is proved.
+Open loops are cut where the law takes the force (`nrs_design.loop.cut_loop`). Two modes, with the
+force and without it, differ by a column times a row, exactly: ``-B C``. With A of the mode without
+it, ``L = C (s I - A)^-1 B``, and ``A - B C`` is the mode that is proved.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ FORCE = "N*m"
 class LinearPart:
     """A linear system with one input."""
 
-    name: str  # What it is
+    name: str  # Name of the part
     # ``x' = A x + B u``, ``y = C x + D u``; shapes (n, n), (n, 1), (m, n), (m, 1).
     A: Matrix
     B: Matrix
@@ -57,17 +56,16 @@ class LinearParts:
     # measured motion.
     actuator: LinearPart
     motion_loop: LinearPart
-    # From the force that a law gets to what it adds to the command.
-    controllers: tuple[LinearPart, ...]
+    controllers: tuple[LinearPart, ...]  # Laws, from measured force to added command
     force_filter: LinearPart | None  # Through which the laws get the force
-    contacts: tuple[LinearPart, ...]  # What is touched, from motion to force
+    contacts: tuple[LinearPart, ...]  # Contacts, from motion to force
 
 
 def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     """Return plant, controllers and contacts at nominal values."""
     loop, low_pass = plant.motion_loop(design.motion.Kp, design.motion.Kd), design.sensor.filter
     lag = plant.actuator.time_constant, Fraction(1), Fraction(0)
-    # Of velocities to velocities, and likewise of positions to positions.
+    # From velocities to velocities, or from positions to positions.
     command, motion = ("command", "rad/s or rad"), ("motion", "rad/s or rad")
     return LinearParts(
         _of_transfer(
@@ -88,7 +86,7 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
 
 
 def _controller_part(controller: Controller, *, measured: bool) -> LinearPart:
-    """Return a law, from the force that it gets to what it adds to the command.
+    """Return a law, from measured force to added command.
 
     Where it has a spring, the offset q that the spring acts on is a state; where that is the
     `measured` position, the force of the spring is a part of its input.
@@ -117,7 +115,7 @@ def _filter_part(low_pass: LowPass) -> LinearPart:
 
 
 def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
-    """Return what is touched, from velocity or position to force; None if that is not proper."""
+    """Return a contact, from velocity or position to force; None if it is not proper."""
     if contact.has_mass:
         return None
     own, output = len(contact.states), ("contact_force", FORCE)
@@ -125,7 +123,7 @@ def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearP
         forms = coordinates(own + 1)
         force, rates = contact.react(forms[-1], forms[:-1])
         return _of_rows(name, rates, force, ("velocity", "rad/s"), output)
-    # Of a position: a spring alone, whose force does not take the velocity.
+    # From a position: only a spring, whose force does not depend on velocity.
     damped, _ = contact.react(coordinates(1)[0], [zero(1)] * own)
     if own > 1 or any(damped):
         return None
@@ -134,7 +132,7 @@ def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearP
 
 
 def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
-    """Yield each environment that is touched, by what the controllers at it command."""
+    """Yield each contact, for velocity or position commands as its controllers give."""
     for environment in plant.environments:
         kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
         parts = (_contact_part(environment.name, environment.nominal, kind) for kind in kinds)

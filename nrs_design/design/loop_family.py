@@ -20,8 +20,7 @@ from nrs_design.design.transfer import FloatArray, frequencies, hurwitz, product
 from nrs_design.loop.cut_loop import AbstractAxis, Place, ProcessorAxis
 from nrs_design.models.contact import AbstractLinearLaw
 
-# What the polynomials of a mode are called.
-_OPENED, _CLOSED, _FREE = "opened", "closed", "free"
+_OPENED, _CLOSED, _FREE = "opened", "closed", "free"  # Names of the polynomials of a mode
 # A virtual mass in kg m^2 that is next to none.
 _LEAST = 1e-12
 _KEPT = 512
@@ -31,10 +30,10 @@ _KEPT = 512
 class LoopFamily:
     """The loops of all admittances with one spring, in contacts that differ in stiffness alone."""
 
-    axis: AbstractAxis  # Whose modes they are
+    axis: AbstractAxis  # Axis of the modes
     contact: AbstractLinearLaw  # Its own stiffness is not used
     spring: Fraction  # Kt in N m/rad; zero is none
-    place: Place  # Of the motor, and the age of the force
+    place: Place  # Motor and age of the force
 
     def loops(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
         """Return the open loops, cut where the law takes the force; all numbers are in SI."""
@@ -47,10 +46,9 @@ class LoopFamily:
     def stiffness_limit(self, Mt: float, Bt: float) -> float:
         """Return the largest stiffness in N m/rad up to which the closed loop is stable throughout.
 
-        The characteristic polynomial is ``A + k B``: a root can reach the right half plane only
-        across the imaginary axis, so the limit is the smallest positive ``k = -A/B`` that is real
-        there. None crosses at zero, where a positive k only adds to what is positive. Infinite if
-        no stiffness destabilizes the loop, 0 if it is unstable however soft the contact is.
+        The characteristic polynomial is ``A + k B``, so the limit is the smallest positive
+        ``k = -A/B`` that is real on the imaginary axis. Infinite if no stiffness destabilizes the
+        loop, 0 if it is unstable however soft the contact is.
         """
         (free,), (contact,) = self._polynomials(_CLOSED, np.array([Mt]), np.array([Bt]))
         rows = free[None], contact[None]
@@ -61,7 +59,7 @@ class LoopFamily:
         return limit if bool(hurwitz(free + probe * contact)) else 0.0
 
     def over_admittance(self, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return numerator and denominator of what the velocity of the law makes of the force.
+        """Return numerator and denominator from velocity to force of the law.
 
         That is ``1/(H Y)``, in s or what stands for it. Sampled, a delay is left out, whose
         magnitude is 1, and there is no spring.
@@ -102,7 +100,7 @@ class LoopFamily:
     def _polynomials(
         self, name: str, Mt: FloatArray, Bt: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return those at no stiffness, and what 1 N m/rad adds."""
+        """Return the polynomials at zero stiffness, and the change by 1 N m/rad."""
         p, q = self._coordinates(Mt, Bt)
         held, grown = (
             rows[0] + np.multiply.outer(p, rows[1]) + np.multiply.outer(q, rows[2])
@@ -111,13 +109,13 @@ class LoopFamily:
         return held, grown
 
     def _coordinates(self, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return in what the polynomials are affine: as the processor holds it, if there is one."""
+        """Return two coordinates of the law in which the polynomials are affine."""
         if not isinstance(self.axis, ProcessorAxis):
             return Mt, Bt
         T, method = float(self.axis.period), self.axis.sampling.admittance
         if not Mt.any():
             return np.zeros_like(Bt), _single(1 / Bt)
-        # Beside others, one without inertia counts as one that has next to none.
+        # Beside others, zero inertia counts as a tiny one.
         Mt = np.maximum(Mt, _LEAST)
         if method == "euler":
             return _single(1 - Bt * T / Mt), _single(T / Mt)
@@ -132,7 +130,7 @@ class LoopFamily:
         return _basis(self, inert=False)
 
 
-# Controllers share them where they touch the same, and choosing their gains does with measuring.
+# Controllers with the same contact share them, and so do choice and analysis of gains.
 @lru_cache(maxsize=_KEPT)
 def _basis(family: LoopFamily, *, inert: bool) -> dict[str, FloatArray]:
     """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""

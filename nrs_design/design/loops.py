@@ -68,7 +68,7 @@ class Loops:
         return np.where(self.stable, peak, np.inf)
 
     def peak_frequency(self) -> FloatArray:
-        """Return where Ms is reached, rad/s; infinite where it is only approached."""
+        """Return the frequency of Ms, rad/s; infinite for a limit at high frequency."""
         omega = stationary(self.denominator, self.closed)
         magnitude = np.nan_to_num(np.abs(ratio(self.denominator, self.closed, omega)))
         padded = np.concatenate([magnitude, np.ones((len(omega), 1))], axis=1)
@@ -131,7 +131,7 @@ class Loops:
 
 
 def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    """Return the ratios at the end of the axis: half the sampling rate, if there is one."""
+    """Return the ratios at infinite frequency, or at half the sampling rate."""
     first = (denominator != 0).argmax(axis=1)[:, None]
     above, below = (np.take_along_axis(p, first, axis=1)[:, 0] for p in (numerator, denominator))
     return above / below

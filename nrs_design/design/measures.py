@@ -1,4 +1,4 @@
-"""What a design is measured by, and from where on its value is doubtful."""
+"""Measures of a design, and their usual limits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nrs_design.spec.model import declared_in
 _DIGITS = 4
 
 
-# What the worst values of the measures are, in words.
+# Explanations of the worst values.
 MEANING = (
     "Margins: the worst of the loop that certify-switching is about, at the nominal values and at "
     "every corner of the ranges of all contacts and the motor, each of them constant; "
@@ -26,7 +26,7 @@ MEANING = (
     "those of the motor.",
     "Computed in floating point, not a proof; between corners a goal is looked at in some points.",
 )
-# What else a table of an impedance design shows.
+# Explanations of further columns of an impedance design.
 LIMIT_MEANING = (
     "k limit: one constant stiffness of the environment of the design, up to which the same loop "
     "is stable at every corner of the other ranges."
@@ -34,11 +34,6 @@ LIMIT_MEANING = (
 COST_MEANING = (
     "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "
     "without a load of the motor; gains are chosen by it."
-)
-RESPONSE_MEANING = (
-    "Transparency and accuracy: proved or refuted over the whole band and all values in the "
-    "ranges, each of them constant, of the linear loop with the gains that ship, in continuous "
-    "time: without friction, rounding and saturation."
 )
 
 
@@ -60,7 +55,7 @@ class GoalStanding(StrEnum):
     """How a goal for a measure stands."""
 
     MET = "met"
-    NOT_JUDGED = "not judged"  # Nothing in the ranges was found to miss it, nor is it proved there
+    NOT_JUDGED = "not judged"  # Neither a miss nor a proof in the ranges
     MISSED = "missed"
 
     @property
@@ -83,7 +78,7 @@ class Measure:
 
     @property
     def upper(self) -> bool:
-        """Whether a goal is the largest value that is accepted; else it is the smallest."""
+        """True if the goal is an upper limit, false if it is a lower one."""
         return declared_in(GoalsSpec)[self.goal].stronger == "smaller"
 
     def text(self, value: float | Fraction) -> str:
@@ -145,11 +140,7 @@ class Measure:
 SENSITIVITY_PEAK = Measure("max_sensitivity_peak", "sensitivity peak Ms", doubtful=2.0)
 GAIN_MARGIN = Measure("min_gain_margin", "gain margin", doubtful=2.0)
 PHASE_MARGIN = Measure(
-    "min_phase_margin",
-    "phase margin",
-    unit="deg",
-    scale=180 / math.pi,
-    doubtful=math.radians(30),
+    "min_phase_margin", "phase margin", unit="deg", scale=180 / math.pi, doubtful=math.radians(30)
 )
 DELAY_MARGIN = Measure("min_delay_margin", "delay margin", unit="ms", scale=1e3)
 DISK_MARGIN = Measure("min_disk_margin", "disk margin")
@@ -157,7 +148,7 @@ IMPEDANCE_ERROR = Measure("max_impedance_error", "factor off the desired impedan
 CREEP = Measure("max_creep", "creep in free motion", "deg/s", turning=True)
 CREEP_ANGLE = Measure("max_creep_angle", "way of creep in free motion", "deg", turning=True)
 FORCE_ERROR = Measure("max_force_error", "steady force error over command", doubtful=0.5)
-# Of a hand that moves the robot: shown where they are asked for.
+# A hand moves the robot: shown only with a goal.
 TRANSPARENCY = Measure("min_transparency", "share of the motion of the hand that is followed")
 HAND_EFFORT = Measure("max_hand_effort", "effort of the hand", unit="N*m*s/rad", turning=True)
 
@@ -166,8 +157,7 @@ IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
 HAND_MEASURES = (TRANSPARENCY, HAND_EFFORT)
 # Taken with the designed gains only, in the environment that they are designed for.
 AT_HOME = (IMPEDANCE_ERROR, FORCE_ERROR, *HAND_MEASURES)
-# Where the errors of the force signal are known.
-CREEP_MEASURES = (CREEP, CREEP_ANGLE)
+CREEP_MEASURES = (CREEP, CREEP_ANGLE)  # Only with known errors of the force signal
 # What rises or falls with each parameter throughout, as long as the loop is stable: the worst is at
 # a corner.
 MONOTONE = (*CREEP_MEASURES, FORCE_ERROR)

@@ -1,39 +1,39 @@
-"""Up to which frequency a displayed admittance is passive, exactly, over the ranges.
+"""Frequencies up to which a displayed admittance is passive, exactly, over the ranges.
 
-A surgeon who holds the tool applies a torque and meets the admittance ``Y = N/D`` from it to the
-velocity of the tool: what the law makes of the torque, and what the torque itself turns of a motor
-with a load. D is the characteristic polynomial of the assembled mode that touches nothing, and
-``D + b N`` that with a damper b, so both are exact. Y is passive at omega where
-``Re N conj(D) >= 0``, a polynomial in ``x = omega^2`` with rational coefficients. Its roots are
-isolated rigorously, without a grid. With a strictly proper motion loop of relative degree
-one and no load, Y has relative degree two with an inertia, so it is never passive at all
-frequencies (thesis 7): what counts is the band.
+The hand applies a torque and meets the admittance ``Y = N/D`` from torque to velocity. D is the
+characteristic polynomial of the assembled mode in the air, ``D + b N`` that with a damper b, so
+both are exact. Y is passive at omega where ``Re N conj(D) >= 0``, a polynomial in ``x = omega^2``
+whose roots are isolated rigorously. With a strictly proper motion loop of relative degree one and
+without load, an inertia is not passive at all frequencies (thesis 7): the band counts.
 
-Ranges: times Mt (or Bt without inertia) and the time constant, N and D are affine in each of Km,
-tau, Mt, Bt and Kt, so the polynomial is of second degree at most in each. Anywhere in the box it is
-a mean of its Bernstein coefficients: where all of these are positive, so is it. Each parameter is
-unknown but constant; that is what a frequency is about.
+Times the time constant, N and D are affine in Km and tau. Where all Bernstein coefficients of the
+polynomial are positive, it is positive in the box. Each parameter is unknown but constant.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from math import isqrt
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.affine_family import (
+    ONE,
     ZERO,
     Polynomial,
-    as_fmpq,
+    Response,
     corners_in,
+    motor_at,
+    polynomial,
     real_product,
     squared_over,
     zeros_at_rest,
 )
-from nrs_design.design.displayed_response import impedance_at, root_below
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.hull import rational
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import fraction_of
 from nrs_design.proof.matrix import RationalMatrix
@@ -43,6 +43,7 @@ from nrs_design.proof.spectrum import is_stable
 # How far beyond a root it is looked for a negative value, at first, as a share of the root, and how
 # often twice as far.
 SHARE, STEPS = Fraction(1, 10**5), 40
+DIGITS = 6  # Decimals of a frequency in rad/s
 
 Enclosed = tuple[Fraction, Fraction]
 
@@ -64,19 +65,17 @@ def passive_band(
 ) -> PassiveBand:
     """Find the frequency up to which the displayed admittance is passive, and one where it is not.
 
-    The law has a positive Bt. Ranges are those of ``Mt``, ``Bt``, ``Kt``, ``Km``, ``tau``, if any.
+    The law has a positive Bt. Ranges are those of ``Km`` and ``tau``, if any.
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(ZERO, None)
     places = product(range(3), repeat=len(ranges))
-    # None is zero at every frequency: passive, and on the border of it.
+    # A zero polynomial is passive, on the border.
     grid = {at: P for at, P in zip(places, real_parts(axis, law, ranges), strict=True) if P}
     if any(P[0] <= 0 for P in grid.values()):
         return PassiveBand(ZERO, None)
     roots = {at: bracket for at, P in grid.items() if (bracket := first_root(P)) is not None}
-    broken = (
-        _negative_beyond((grid[at],), high, 6) for at, (_, high) in roots.items() if 1 not in at
-    )
+    broken = (_negative_beyond(grid[at], high) for at, (_, high) in roots.items() if 1 not in at)
     passive = root_below(min(low for low, _ in roots.values())) if roots else None
     return PassiveBand(passive, min((omega for omega in broken if omega), default=None))
 
@@ -88,17 +87,26 @@ def real_parts(
 
     They are the Bernstein coefficients over the box: at its corners, the values there.
     """
-    corners = [corner[:2] for corner in corners_in(impedance_at(axis, law), ranges)]
-    return [without_zeros(P) for P in squared_over(corners, real_product)]
+    corners = corners_in(impedance_at(axis, law), ranges)
+    return [P.right_shift(zeros_at_rest(P)) for P in squared_over(corners, real_product)]
 
 
-def without_zeros(P: Polynomial) -> Polynomial:
-    """Leave out powers of x that all terms have."""
-    return P.right_shift(zeros_at_rest(P))
+def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
+    """Return D and N as a function of the parameters."""
+
+    def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+        place, factor = motor_at(axis, values)
+        free, damped = (
+            factor * polynomial(*axis.cut(law, KelvinVoigt(ZERO, b), place).closed)
+            for b in (ZERO, ONE)
+        )
+        return free, damped - free
+
+    return at
 
 
 def first_root(P: Polynomial) -> Enclosed | None:
-    """Return numbers between which the smallest positive root is, or None if there is none.
+    """Return bounds on the smallest positive root, or None without one.
 
     Ball arithmetic isolates all roots rigorously, multiple ones as well. P is not zero at zero.
     """
@@ -107,14 +115,17 @@ def first_root(P: Polynomial) -> Enclosed | None:
     return min(positive, default=None)
 
 
-def _negative_beyond(
-    polynomials: Iterable[Polynomial], x: Fraction, digits: int
-) -> Fraction | None:
-    """Return a number of so many digits, its square a little beyond x, where all are negative."""
+def _negative_beyond(P: Polynomial, x: Fraction) -> Fraction | None:
+    """Return a number whose square is a little beyond x, and where P is negative."""
     step = SHARE * x
     for _ in range(STEPS):
-        root = root_below(x + step, digits) + Fraction(1, 10**digits)
-        if all(P(as_fmpq(root**2)) < 0 for P in polynomials):
+        root = root_below(x + step) + Fraction(1, 10**DIGITS)
+        if P(rational(root**2)) < 0:
             return root
         step *= 2
     return None
+
+
+def root_below(x: Fraction) -> Fraction:
+    """Return a number of a few decimals whose square is not above x."""
+    return Fraction(isqrt(int(x * 10 ** (2 * DIGITS))), 10**DIGITS)

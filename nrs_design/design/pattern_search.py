@@ -1,25 +1,32 @@
-"""Two deterministic searches on the unit square.
+"""The lowest point of a function on the unit square, by a deterministic search.
 
-Both look for the best v of every u first. `refine` runs a pattern search from several points of
-that valley side by side. `search_square` is for objectives with a forbidden region: it looks for
-the best u with its best v, because along one axis a forbidden region is only an end of an interval,
-and its slanted edge cannot hold the search.
-By hand, as the optimizers of SciPy ask for one point after the other, or want smooth constraints:
-`differential_evolution` finds the same optimum in twenty times the time (see `benchmarks/`).
+The best v of every u makes a valley. From the lowest minima along it, a pattern search moves before
+it shrinks, so that a minimum away from its start is still reached, also along the edge of what is
+allowed. By hand, as the optimizers of SciPy ask for one point after the other, or want smooth
+constraints: `differential_evolution` finds the same optimum in twenty times the time (see
+`benchmarks/`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.design.transfer import BoolArray, FloatArray
+from nrs_design.design.transfer import FloatArray
 
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
+TOLERANCE = 1e-5  # Size of the pattern at which a search ends
+# Coordinates u of the valley, minima along it from which the search starts, and its first pattern.
+_ACROSS, _STARTS, _STEP = 25, 4, (1 / 96, 1 / 160)
+# Coordinates v of the valley: at first, and around the best of them in each round.
+_COARSE, _FINE, _ROUNDS = 49, 7, 8
+# Offsets of the pattern in u and v, the center first.
+_PATTERN = np.array([*product((0.0, -1.0, 1.0, -2.0, 2.0), repeat=2)])
 _MAX_ROUNDS = 100
 _LEAST_PROGRESS = 1e-10
 
@@ -35,17 +42,42 @@ class Points:
     slope: FloatArray  # Shape (m,). Direction dv/du of the valley at each point.
 
 
-def refine(objective: Objective, start: Points, tolerance: float) -> Points:
+def lowest_on_square(
+    coarse: Objective, objective: Objective, free: tuple[bool, bool]
+) -> tuple[float, float, float]:
+    """Return the lowest point of the unit square, and the objective there.
+
+    The objective maps arrays u, v to values, infinite where a point is not allowed; the coarse one
+    is near to it and quick. A coordinate that is not free is 0.
+    """
+    start = _valley(coarse, free)
+    if not len(start.u):
+        return 0.0, 0.0, np.inf
+    found = refine(objective, start)
+    u, v, values = snap(objective, found.u, found.v)
+    best = int(values.argmin())
+    return float(u[best]), float(v[best]), float(values[best])
+
+
+def _valley(objective: Objective, free: tuple[bool, bool]) -> Points:
+    """Return the starts of the search: the lowest minima of the best v of every u."""
+    u = np.linspace(0, 1, _ACROSS) if free[0] else np.zeros(1)
+    v, values = _best_across(objective, u, moves=free[1])
+    starts = lowest_minima(values, _STARTS)
+    slope = np.gradient(v, u) if free[0] else np.zeros(1)
+    return Points(u[starts], v[starts], np.multiply(_STEP, free), slope[starts])
+
+
+def refine(objective: Objective, start: Points) -> Points:
     """Search from every point on a 5 x 5 pattern that moves while it improves, else shrinks.
 
     The pattern is sheared along the valley, whose walls are kinks: a pattern across it would
-    find every neighbor higher and stop halfway down. A search ends at the tolerance, the size of
-    its pattern. The objective is infinite where a point is not allowed.
+    find every neighbor higher and stop halfway down.
     """
-    offsets = start.step * _pattern(start.step > 0)
+    offsets = start.step * _PATTERN
     u, v, scale = start.u.copy(), start.v.copy(), np.ones(len(start.u))
     for _ in range(_MAX_ROUNDS):
-        rows = np.flatnonzero(scale * start.step.max() > tolerance)
+        rows = np.flatnonzero(scale * start.step.max() > TOLERANCE)
         if not len(rows):
             break
         moves = scale[rows, None, None] * offsets
@@ -65,16 +97,10 @@ def _onto_square(w: FloatArray) -> FloatArray:
     return np.minimum(np.maximum(w, 0.0), 1.0)
 
 
-def _pattern(free: BoolArray) -> FloatArray:
-    """Return the offsets in u and v, the center first; a parameter that is not free stays."""
-    axes = [[0.0, -1.0, 1.0, -2.0, 2.0] if moves else [0.0] for moves in free]
-    return np.array([(i, j) for i in axes[0] for j in axes[1]])
-
-
 def snap(
     objective: Objective, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Move points within 0.01 of an edge onto it where that costs nothing; return their costs too.
+    """Move points near an edge onto the edge where the cost stays; return costs too.
 
     An objective that is flat near an edge lets rounding hide the last step there.
     """
@@ -90,73 +116,26 @@ def snap(
 
 
 def lowest_minima(values: FloatArray, most: int) -> NDArray[np.intp]:
-    """Return where no neighbor undercuts a finite value, the lowest first, so many at most."""
+    """Return the places of local minima, the lowest first, `most` at most."""
     padded = np.pad(values, 1, constant_values=np.inf)
     local = np.isfinite(values) & (values <= padded[:-2]) & (values <= padded[2:])
     places = np.flatnonzero(local)
     return places[np.argsort(values[places], kind="stable")][:most]
 
 
-_COARSE = (33, 49)
-_FINE = 7
-_ROUNDS = 8
-_STARTS = 3
-
-
-def search_square(objective: Objective, free: tuple[bool, bool]) -> tuple[float, float, float]:
-    """Return the best point of the unit square, and the objective there.
-
-    The objective maps arrays u, v to values, infinite where a point is not allowed. A coordinate
-    that is not free is 0.
-    """
-    u = np.linspace(0, 1, _COARSE[0]) if free[0] else np.zeros(1)
-    v, values = best_across(objective, u, moves=free[1])
-    starts = lowest_minima(values, _STARTS)
-    found = [(values[i], u[i], v[i]) for i in starts]
-    if free[0]:
-        found += [_refine_along(objective, u[i], moves=free[1]) for i in starts]
-    best = min(found, default=(np.inf, 0.0, 0.0))
-    return float(best[1]), float(best[2]), float(best[0])
-
-
-def best_across(
+def _best_across(
     objective: Objective, u: FloatArray, *, moves: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the best v of every u, and the objective there."""
     if not moves:
         v = np.zeros(len(u))
         return v, objective(u, v)
-    grid = np.broadcast_to(np.linspace(0, 1, _COARSE[1]), (len(u), _COARSE[1]))
-    v, values = _best_of(objective, u, grid)
-    spacing = 1 / (_COARSE[1] - 1)
-    for _ in range(_ROUNDS):
-        v, values = _best_of(objective, u, _around(v, spacing))
+    rows, tried = np.arange(len(u)), np.broadcast_to(np.linspace(0, 1, _COARSE), (len(u), _COARSE))
+    spacing = 1 / (_COARSE - 1)
+    for _ in range(_ROUNDS + 1):
+        values = objective(np.repeat(u, tried.shape[1]), tried.ravel()).reshape(tried.shape)
+        best = values.argmin(axis=1)
+        v = tried[rows, best]
+        tried = _onto_square(v[:, None] + spacing * np.linspace(-1, 1, _FINE))
         spacing *= 2 / (_FINE - 1)
-    return v, values
-
-
-def _best_of(objective: Objective, u: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-    repeated = np.broadcast_to(u[:, None], v.shape)
-    values = objective(repeated.ravel(), v.ravel()).reshape(v.shape)
-    best = values.argmin(axis=1)
-    rows = np.arange(len(u))
-    return v[rows, best], values[rows, best]
-
-
-def _refine_along(objective: Objective, start: float, *, moves: bool) -> tuple[float, float, float]:
-    """Return objective, u and v of the best point near a start, each u with its best v."""
-    u, spacing = start, 1 / (_COARSE[0] - 1)
-    best = (np.inf, u, 0.0)
-    for _ in range(_ROUNDS):
-        tried = _around(np.array([u]), spacing)[0]
-        v, values = best_across(objective, tried, moves=moves)
-        index = int(values.argmin())
-        best = min(best, (float(values[index]), float(tried[index]), float(v[index])))
-        u, spacing = best[1], spacing * 2 / (_FINE - 1)
-    return best
-
-
-def _around(centers: FloatArray, spacing: float) -> FloatArray:
-    """Return points around each center, itself among them, that stay on the unit interval."""
-    offsets = spacing * np.linspace(-1, 1, _FINE)
-    return np.asarray(np.minimum(np.maximum(centers[:, None] + offsets, 0.0), 1.0))
+    return v, values[rows, best]

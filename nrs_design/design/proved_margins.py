@@ -1,10 +1,9 @@
 """Margins over whole ranges, in exact arithmetic.
 
-The worst margin at the corners of all ranges is floating point, and says nothing of values in
-between. Here it is only a proposal: rounded to its unfavorable side, it is proved for every
-stiffness and motor in their ranges, each unknown but constant. With the open loop ``N/D`` and
-``C = D + N``, of which `nrs_design.loop.cut_loop` gives D and C exactly, everywhere on the
-imaginary axis:
+The worst margin at the corners of all ranges is floating point, and only a proposal: rounded to its
+unfavorable side, it is proved for every stiffness and motor in their ranges, each constant. The
+open loop is ``N/D``, and ``C = D + N``, exactly (`nrs_design.loop.cut_loop`). On the imaginary
+axis:
 
 - ``|S| <= Ms`` is ``|D| <= Ms |C|``, and the disk margin d is ``|D - N| <= 2/d |C|``;
 - the gain margin g says that ``D + f N`` keeps its roots on the left for factors f from 1 to g;
@@ -13,8 +12,7 @@ imaginary axis:
 - the delay margin T says the same of ``a = -omega T'`` with ``0 <= T' <= T``. Below a frequency w,
   t is between 0 and ``-omega tan(w T/2)/w``; beyond the last gain crossover, nothing is zero.
 
-All of it is affine in each parameter, so squares of magnitudes have Bernstein forms, which
-`nrs_design.design.largest_ratio` takes.
+All of it is affine in each parameter, so squares of magnitudes have Bernstein forms.
 """
 
 from __future__ import annotations
@@ -36,29 +34,28 @@ from nrs_design.design.affine_family import (
     ZERO,
     FrequencyPiece,
     Polynomial,
-    Quotient,
+    Response,
     Square,
     Squares,
-    as_fmpq,
     corners_in,
     everywhere,
     is_stable_over,
+    motor_at,
     parts_on_axis,
     polynomial,
     squared_magnitude,
 )
-from nrs_design.design.displayed_response import over_admittance, parameters_at
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import GoalStanding, Measure
 from nrs_design.design.transfer import frequencies
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.loop.hull import rational
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
-# Bernstein coefficients that are looked at for one question, and ranges at once.
-_MOST, _RANGES = 40_000, 4
+_RANGES = 4  # Ranges at once
 # Beyond the worst value at the corners: between them it may be worse.
 _SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
 _DIGITS = 4
@@ -73,7 +70,7 @@ class RangedLoop:
     axis: ContinuousAxis  # From which the modes follow
     law: CompliantLaw  # With the gains that ship
     environment: Environment  # With any linear law
-    ranges: Mapping[str, Interval]  # Where ``Km``, ``tau``, ``Mt``, ``Bt`` and ``Kt`` are
+    ranges: Mapping[str, Interval]  # Ranges of ``Km`` and ``tau``
     desired: Fraction = ONE  # Desired impedance, N m s/rad
     bandwidth: Fraction = ONE  # Highest frequency of the command, rad/s
 
@@ -85,7 +82,7 @@ class RangedLoop:
 
     @cached_property
     def stable(self) -> bool:
-        """Whether the loop is shown to be stable in the whole box."""
+        """True if the loop is proved stable in the whole box."""
         return self._stays_stable(ONE)
 
     def holds(self, measure: Measure, value: Fraction) -> bool:
@@ -107,10 +104,12 @@ class RangedLoop:
 
         `held`: D is that of nothing touched, for a hand that holds the robot.
         """
-        law, place, factor = parameters_at(self.axis, self.law, values)
+        place, factor = motor_at(self.axis, values)
         contact = self._contact(values)
-        factor *= as_fmpq(prod((contact[name] for name in self.environment.law.inverse), start=ONE))
-        loop = self.axis.cut(law, self.environment.at(contact), place)
+        factor *= rational(
+            prod((contact[name] for name in self.environment.law.inverse), start=ONE)
+        )
+        loop = self.axis.cut(self.law, self.environment.at(contact), place)
         first = loop.free if held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)
 
@@ -120,13 +119,12 @@ class RangedLoop:
     def _stays_stable(self, gain: Fraction) -> bool:
         """Tell whether ``D + f N`` keeps its roots on the left for f from 1 to a gain."""
 
-        def at(values: Mapping[str, Fraction]) -> Quotient:
+        def poles(values: Mapping[str, Fraction]) -> tuple[Polynomial]:
             opened, closed = self._cut(values)
-            poles = opened + as_fmpq(values.get("factor", ONE)) * (closed - opened)
-            return Quotient(poles, poles, poles)
+            return (opened + rational(values.get("factor", ONE)) * (closed - opened),)
 
         box = self.box | ({"factor": Interval(ONE, ONE, gain)} if gain > 1 else {})
-        return gain >= 1 and is_stable_over(at, box, _MOST)
+        return gain >= 1 and is_stable_over(poles, box)
 
     def _has_sensitivity(self, peak: Fraction) -> bool:
         return self._stays_below(lambda d, c: (d, c), peak)
@@ -137,12 +135,19 @@ class RangedLoop:
     def _has_impedance(self, error: Fraction) -> bool:
         """Tell whether ``N/(H Y C)`` is within a factor of the desired impedance in the band."""
         # A spring is displayed without bound towards rest.
-        if self.law.gains.get("Kt") or not self.ranges.keys().isdisjoint(self.law.gains):
+        if self.law.gains.get("Kt"):
             return False
-        below, band = over_admittance(self.law, self.axis.low_pass), self.bandwidth
+        below, band = self._over_admittance(), self.bandwidth
         return self._stays_below(
             lambda d, c: ((c - d) * below, c), error * self.desired, band
         ) and self._stays_below(lambda d, c: (c, (c - d) * below), error / self.desired, band)
+
+    def _over_admittance(self) -> Polynomial:
+        """Return ``1/(H Y)`` of a law without a spring."""
+        law, low_pass = polynomial(self.law.gains["Mt"], self.law.gains["Bt"]), self.axis.low_pass
+        if low_pass is None:
+            return law
+        return law * polynomial(1 / low_pass.pole, ONE) ** low_pass.order
 
     def _has_transparency(self, share: Fraction) -> bool:
         """Tell whether ``N/C`` is nowhere below a share in the band."""
@@ -153,13 +158,12 @@ class RangedLoop:
         if self.environment.law not in (Elastic, KelvinVoigt):
             return False
 
-        def felt(values: Mapping[str, Fraction]) -> Quotient:
+        def felt(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
             opened, closed = self._cut(values, held=True)
             hand = self._contact(values)
-            above = opened * polynomial(hand.get("b", ZERO), hand["k"])
-            return Quotient(above, closed.left_shift(1))
+            return opened * polynomial(hand.get("b", ZERO), hand["k"]), closed.left_shift(1)
 
-        return _is_below(Squares.of(felt, self.box), effort, self.bandwidth)
+        return self._is_below(felt, effort, self.bandwidth)
 
     def _stays_below(
         self,
@@ -170,11 +174,11 @@ class RangedLoop:
         held: bool = False,
     ) -> bool:
         """Tell whether a quotient of D and C is nowhere above a limit, up to a frequency if any."""
+        return self._is_below(lambda values: response(*self._cut(values, held=held)), limit, band)
 
-        def at(values: Mapping[str, Fraction]) -> Quotient:
-            return Quotient(*response(*self._cut(values, held=held)))
-
-        return _is_below(Squares.of(at, self.box), limit, band)
+    def _is_below(self, at: Response, limit: Fraction, band: Fraction | None) -> bool:
+        pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
+        return Squares.of(at, self.box).stay_below(limit**2, pieces)
 
     def _has_phase(self, margin: Fraction) -> bool:
         t, pieces = _tangent(margin / 2), everywhere(Fraction(10))
@@ -194,34 +198,30 @@ class RangedLoop:
         return True
 
     def _nowhere_zero(
-        self,
-        share: Interval,
-        square: Square,
-        pieces: Sequence[FrequencyPiece],
+        self, share: Interval, square: Square, pieces: Sequence[FrequencyPiece]
     ) -> bool:
-        """Tell whether C, and a share of ``N - D`` beside it, nowhere cancel on the axis."""
+        """Tell whether C and a share of ``N - D`` cancel nowhere on the axis."""
 
-        def at(values: Mapping[str, Fraction]) -> Quotient:
+        def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
             opened, closed = self._cut(values)
-            return Quotient(closed, as_fmpq(values["share"]) * (closed - 2 * opened))
+            return closed, rational(values["share"]) * (closed - 2 * opened)
 
-        made = [corner[:2] for corner in corners_in(at, {**self.box, "share": share})]
-        return Squares(made, square=square).vanish_nowhere(pieces, _MOST)
+        made = corners_in(at, {**self.box, "share": share})
+        return Squares(made, square=square).vanish_nowhere(pieces)
 
     def _beyond_crossovers(self) -> Fraction | None:
         """Return a frequency from which on ``|N| < |D|``; None if none is shown."""
 
-        def at(values: Mapping[str, Fraction]) -> Quotient:
+        def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
             opened, closed = self._cut(values)
-            return Quotient(closed - opened, opened)
+            return closed - opened, opened
 
-        made = corners_in(at, self.box)
-        proposed = max(map(_last_crossover, made))
+        proposed = max(_last_crossover(*corner) for corner in corners_in(at, self.box))
         if not proposed:
             return None
         last = Fraction(proposed) * _BEYOND
         beyond = FrequencyPiece(ZERO, 1 / last**2, inverse=True)
-        found = Squares.of(at, self.box).largest(beyond, limit=ONE, nearly=None, most=_MOST).above
+        found = Squares.of(at, self.box).bound(beyond, limit=ONE)
         return last if found is not None and found < 1 else None
 
 
@@ -244,7 +244,7 @@ def ranged_loops(
     environments: Sequence[Environment],
     ranges: Mapping[str, Interval],
 ) -> tuple[RangedLoop, ...]:
-    """Return the loops of a controller in all its contacts; none where one has too many ranges."""
+    """Return the loops of a controller in its contacts; none with too many ranges."""
     loops = tuple(RangedLoop(axis, law, environment, ranges) for environment in environments)
     return loops if all(len(loop.box) <= _RANGES for loop in loops) else ()
 
@@ -256,7 +256,7 @@ def with_proofs(
     desired: float = 1.0,
     bandwidth: float = 1.0,
 ) -> tuple[Achieved, ...]:
-    """Return measured values with what is proved of them over all ranges: a second's work.
+    """Return worst values with their proofs over the ranges, in about a second.
 
     The desired impedance is in N m s/rad, the highest frequency of the command in rad/s; `home` is
     the environment that the gains are designed for. They are of impedance controllers alone.
@@ -271,13 +271,7 @@ def with_proofs(
     if not proposed or not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
     at_home = [
-        replace(
-            loop,
-            # Taken with the designed gains.
-            ranges={name: r for name, r in loop.ranges.items() if name in ("Km", "tau")},
-            desired=Fraction(desired),
-            bandwidth=Fraction(bandwidth),
-        )
+        replace(loop, desired=Fraction(desired), bandwidth=Fraction(bandwidth))
         for loop in loops
         if loop.environment.name == home
     ]
@@ -293,16 +287,14 @@ def with_proofs(
 
 def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
     """Return the best value that is proved for all loops, of those that are proposed."""
-    for value in _proposed(found):
-        if all(loop.holds(found.measure, value) for loop in loops):
-            return value
-    return None
+    proved = (v for v in _proposed(found) if all(loop.holds(found.measure, v) for loop in loops))
+    return next(proved, None)
 
 
 def _proposed(found: Achieved) -> Iterator[Fraction]:
-    """Yield values, the best first: as it is shown, the goal, and what is a little worse."""
+    """Yield values, the best first: the shown one, the goal, and slightly worse ones."""
     wanted = found.goal
-    # What nothing limits at the corners has no value to propose.
+    # An infinite value at the corners gives no proposal.
     slacks = _SLACK if isfinite(found.value) else ()
     upper, scale = found.measure.upper, found.measure.exact_scale
     context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)
@@ -317,11 +309,6 @@ def _proposed(found: Achieved) -> Iterator[Fraction]:
         yield Fraction(wanted)
 
 
-def _is_below(squares: Squares, limit: Fraction, band: Fraction | None) -> bool:
-    pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
-    return squares.stay_below(limit**2, pieces, _MOST)
-
-
 def _tangent(angle: Fraction) -> Fraction | None:
     """Return a number that is not below a tangent; None from a quarter of a turn on."""
     if angle > Fraction(3, 2):
@@ -330,8 +317,8 @@ def _tangent(angle: Fraction) -> Fraction | None:
         return fraction_of(ball_around(angle).tan().upper())
 
 
-def _last_crossover(loop: Quotient) -> float:
-    excess = squared_magnitude(loop.above) - squared_magnitude(loop.below)
+def _last_crossover(above: Polynomial, below: Polynomial) -> float:
+    excess = squared_magnitude(above) - squared_magnitude(below)
     found = frequencies(np.array([[float(c) for c in reversed(excess.coeffs())]]))
     return float(np.nanmax(found, initial=0.0))
 

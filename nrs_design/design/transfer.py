@@ -1,9 +1,9 @@
 """Rational transfer functions in s, and many polynomials at once.
 
-By hand, as designs need many polynomials at once, where NumPy takes one after the other, and no
-matplotlib, which python-control loads; `to_control` is the way over to it. One polynomial is a
-row, highest power first, all of one length. On ``s = j omega`` an even power is real, so peaks and
-crossings are roots of polynomials in ``x = omega^2``: no grid of frequencies decides anything.
+By hand, as NumPy takes one polynomial after the other, and python-control (`to_control`) loads
+matplotlib. One polynomial is a row, highest power first, all of one length. On ``s = j omega`` an
+even power is real, so peaks and crossings are roots of polynomials in ``x = omega^2``: no grid of
+frequencies decides anything.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from itertools import zip_longest
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.float64]
@@ -85,9 +86,8 @@ def controllable_form(
 def hurwitz(coefficients: ArrayLike) -> BoolArray:
     """Tell which of many polynomials, one per row, have all roots in the open left half plane.
 
-    Routh's array, run on all polynomials at once, where `numpy.roots` takes one. A leading
-    coefficient that is exactly zero lowers the degree, so an admittance without mass needs no case
-    of its own. The highest power is first; the zero polynomial counts as not Hurwitz.
+    Routh's array for all polynomials at once, the highest power first. Leading zeros lower the
+    degree, as of an admittance without mass; the zero polynomial is not Hurwitz.
     """
     table = np.asarray(coefficients, dtype=np.float64)
     rows = table.reshape(-1, table.shape[-1])
@@ -132,16 +132,12 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def ratio(numerator: FloatArray, denominator: FloatArray, omega: FloatArray) -> ComplexArray:
     """Return ``N/D`` at ``j omega``: row i at all frequencies (rad/s) of row i; NaN for NaN."""
+    s = 1j * omega
     with np.errstate(invalid="ignore"):
-        return _evaluate(numerator, omega) / _evaluate(denominator, omega)
-
-
-def _evaluate(polynomials: FloatArray, omega: FloatArray) -> ComplexArray:
-    s = np.asarray(1j * omega, dtype=np.complex128)
-    value = np.zeros(omega.shape, dtype=np.complex128)
-    for coefficient in polynomials.T:
-        value = value * s + coefficient[:, None]
-    return value
+        above, below = (
+            polyval(s, p.T[::-1, :, None], tensor=False) for p in (numerator, denominator)
+        )
+        return np.asarray(above / below, dtype=np.complex128)
 
 
 def stationary(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
@@ -157,8 +153,7 @@ def _derivative(polynomials: FloatArray) -> FloatArray:
 def product_parts(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Split ``a(j omega) conj(b(j omega)) = R(x) + j omega I(x)``."""
     (a_even, a_odd), (b_even, b_odd) = _even_odd(a), _even_odd(b)
-    odd = multiply(a_odd, b_odd)
-    shifted = np.concatenate([odd, np.zeros((len(odd), 1))], axis=1)
+    shifted = np.pad(multiply(a_odd, b_odd), ((0, 0), (0, 1)))
     imaginary = multiply(a_odd, b_even) - multiply(a_even, b_odd)
     return _sum(multiply(a_even, b_even), shifted), imaginary
 
@@ -172,11 +167,10 @@ def _even_odd(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _sum(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Add polynomials row by row."""
     width = max(a.shape[1], b.shape[1])
-    total = np.zeros((len(a), width))
-    total[:, width - a.shape[1] :] += a
-    total[:, width - b.shape[1] :] += b
-    return total
+    a, b = (np.pad(p, ((0, 0), (width - p.shape[1], 0))) for p in (a, b))
+    return np.asarray(a + b)
 
 
 def squared(polynomials: FloatArray) -> FloatArray:

@@ -7,32 +7,27 @@ Nocedal and Wright 2006, chapter 18).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# How far a coordinate moves at first, and at least.
-REGION, SMALLEST_REGION = 0.25, 1e-3
-# A constraint that is missed by one adds so much to the cost.
-PENALTY = 10.0
+REGION, SMALLEST_REGION = 0.25, 1e-3  # How far a coordinate moves at first, and at least
+PENALTY = 10.0  # Added cost of a constraint violated by one
 # A step is kept if it brings this share of what was predicted; from the other on, the region grows.
 KEPT, GOOD = 0.1, 0.6
-# What is less is no improvement.
+# Least improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
-# Slopes that were wrong by more than this share are found again.
-WRONG = 0.012
-# How far a constraint is moved for its shadow price; one met by more than the slack has none.
-MOVED, SLACK = 0.01, 0.05
+WRONG = 0.012  # Slopes that were wrong by more than this share are found again
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """What is known at a point."""
+    """Values and slopes at a point."""
 
     x: Array  # Shape (n,)
     values: Array  # Shape (k,). Of the constraints; those that are not negative are met.
@@ -41,7 +36,7 @@ class Evaluation:
 
 @dataclass(frozen=True, eq=False)
 class ConstrainedProblem:
-    """What is to be cheap, and what is to be met."""
+    """Cost and constraints."""
 
     cost: Callable[[Array], float]  # Quick
     evaluate: Callable[[Array, Array], Evaluation]  # At a point, given what is expected; takes long
@@ -62,8 +57,6 @@ class ConstrainedOptimum:
     last: Evaluation
     jacobian: Array  # Shape (k, n), there
     cost: float
-    # Shape (k,). What the cost rises by if a constraint is one harder to meet.
-    shadow_prices: Array
     evaluations: int
 
 
@@ -88,8 +81,7 @@ def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> 
         if (np.abs(found.values - reached) > WRONG * np.abs(reached - here.values)).any():
             slopes = found.jacobian()
         here, region = found, 2 * region if gained >= GOOD * predicted else region
-    prices = np.array([*_shadow_prices(problem, here, slopes)])
-    return ConstrainedOptimum(here, slopes, problem.cost(here.x), prices, count)
+    return ConstrainedOptimum(here, slopes, problem.cost(here.x), count)
 
 
 def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
@@ -132,18 +124,3 @@ def cheapest(
         options={"ftol": 1e-9, "maxiter": 200},
     )
     return np.asarray(np.clip(found.x[:n], low, high), dtype=float)
-
-
-def _shadow_prices(problem: ConstrainedProblem, here: Evaluation, slopes: Array) -> Iterator[float]:
-    """Yield what each constraint costs near a point, in first order; nothing for one far from it.
-
-    A search ends a little inside of what binds.
-    """
-
-    def cost(i: int, value: float) -> float:
-        values = here.values.copy()
-        values[i] = value
-        return problem.cost(_cheapest(problem, replace(here, values=values), slopes, REGION))
-
-    for i, value in enumerate(here.values):
-        yield max(cost(i, -MOVED) - cost(i, 0.0), 0.0) / MOVED if value <= SLACK else 0.0

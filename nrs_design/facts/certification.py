@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.search.margin import Bracket, MarginBrackets
 
 
@@ -65,19 +64,6 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
-def radius_facts(radius: RadiusBounds | None) -> dict[str, Any]:
-    """Return the facts of the growth per step that signals reach; none in continuous time."""
-    if radius is None:
-        return {}
-    word = None if radius.word is None else [[n, int(count)] for n, count in radius.word]
-    found = {
-        **_number("lower", radius.lower, lower_float),
-        **_number("upper", radius.upper, upper_float),
-        **_number("apart", radius.gap, upper_float),
-    }
-    return {"rho": {**found, "word": word, "method": radius.method}}
-
-
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:
     """Return the facts of the margins that were asked for."""
     content: dict[str, Any] = {}
@@ -97,8 +83,6 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
         }
-    if margins.misses is not None:
-        content["most_misses"] = _ends(margins.misses)
     if margins.loop is not None:
         content["loop_margins"] = loop_facts(margins.loop)
     return content

@@ -230,17 +230,6 @@ class Examiner:
                 place, status = self.keys_of_goal(item.name, measure.goal), _ENDS[found.standing]
                 yield self.obligation(rules.GOAL, subject, status, message, place)
 
-    def responses(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
-        """Yield NRS112 for every goal for a frequency response of every controller."""
-        for item in analysis.impedance:
-            for found in item.responses:
-                status = Status.PROVED if found.proved else Status.INCONCLUSIVE
-                status = Status.REFUTED if found.refuted else status
-                message = f"controller {item.name}: {found.said}; {found.wanted} is wanted"
-                keys = self.keys_of_goal(item.name, found.key)
-                subject = f"{item.name}: {found.key}"
-                yield self.obligation(rules.RESPONSE_GOAL, subject, status, message, keys)
-
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for every goal to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):

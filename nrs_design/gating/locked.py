@@ -24,7 +24,6 @@ from nrs_design.gating.obligations import (
 from nrs_design.gating.rules import (
     GOAL,
     LOCKED,
-    RESPONSE_GOAL,
     RULES,
     SCENARIO_LIMIT,
     STIFFNESS_RANGE,
@@ -43,7 +42,6 @@ _AS_LOCKED = "(as locked; not computed again)"
 
 # Requirement on a design: id of the rule, and subject.
 Asked = tuple[str, str]
-_RESPONSES = ("transparency", "accuracy")
 # A design without margins has this in the place of all that is asked of controllers.
 _NO_MARGINS = (STIFFNESS_RANGE.id, "controllers")
 
@@ -239,4 +237,4 @@ def _of_controllers(spec: InteractionDesignSpec) -> Iterator[Asked]:
             if "goals" in type(controller).model_fields and ONLY_FOR.get(key, controller.type) == (
                 controller.type
             ):
-                yield (RESPONSE_GOAL if key in _RESPONSES else GOAL).id, f"{name}: {key}"
+                yield GOAL.id, f"{name}: {key}"

@@ -210,7 +210,7 @@ def _examine(
 def _judge_margins(
     result: Result, examiner: Examiner, progress: Progress
 ) -> tuple[DesignAnalysis | None, tuple[Obligation, ...]]:
-    """Analyze a design, and return how its goals and stiffness ranges end: NRS103, NRS106, NRS112.
+    """Analyze a design, and return how its goals and stiffness ranges end: NRS103, NRS106.
 
     No analysis for given matrices, and where a nominal loop is unstable.
     """
@@ -221,7 +221,7 @@ def _judge_margins(
         analysis = run_judgement(result.designed)
     except DesignError as error:
         return None, (examiner.no_margins(error),)
-    judged = (examiner.stiffness_ranges, examiner.goals, examiner.responses)
+    judged = (examiner.stiffness_ranges, examiner.goals)
     return analysis, tuple(item for judge in judged for item in judge(analysis))
 
 

@@ -1,9 +1,7 @@
-"""Why a verdict is inconclusive: which lines of the spec keep it from being proved.
+"""The lines of a spec that keep it from a proof, where the verdict is inconclusive.
 
-The gains that are given are changed together first. Then each line alone is changed to what asks
-for the least, the spec is taken all the way again, and where it is proved then, so is as much of
-what the line asks for as can be. What counts as proved has passed the exact check, of exactly the
-changed spec.
+The given gains are changed together first. Then each line alone is changed to its weakest form, and
+bisection finds the strongest one with a proof. Each changed spec passes the exact check.
 """
 
 from __future__ import annotations
@@ -35,31 +33,28 @@ from nrs_design.spec.relaxations import (
     iterate_relaxations,
 )
 
-# Of the budget of the search, what may be spent here: a step that is begun goes beyond it a little.
-SHARE = 0.4
-# Of that, what may be spent on gains.
-GAINS = 0.4
+SHARE = 0.4  # Share of the search budget; the last step may exceed it
+GAINS = 0.4  # Share of this for gains
 # Of the rest, up to where it may be spent on finding lines about numbers and words, on how far they
 # go, and on what is left out whole.
 FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
 MOST_LINES = 24
-# Lines that are printed, beside the one above and the one below them.
-SHOWN = 3
+SHOWN = 3  # Printed lines, beside the first and the last
 
 
 @dataclass(frozen=True, slots=True)
 class Blocking:
-    """One line of a spec that asks for less, and what is proved then."""
+    """One changed line of a spec that has a proof."""
 
     place: Position
     line: str  # The keys that lead there, with dots
-    asked: str  # What it asks for
-    proved: str  # What of that is proved, in the same words; empty if it is left out
+    asked: str  # Value in the spec
+    proved: str  # Proved value, in the same words; empty if the line goes
     word: str  # Before it: up to, down to, within, with, without
-    write: str  # What to write there instead; empty if it is left out
-    changes_model: bool  # Whether that changes what the robot does, or what is taken for granted
+    write: str  # Replacement; empty if the line goes
+    changes_model: bool  # True if robot or assumptions change
     left_out: tuple[str, ...] = ()  # Keys about the values as they were, which go as well
 
 
@@ -67,11 +62,11 @@ class Blocking:
 class Proved:
     """A spec that asks for less, and is proved."""
 
-    lines: tuple[Blocking, ...]  # What it says otherwise: one line, or several together
+    lines: tuple[Blocking, ...]  # Changed lines: one, or several together
     claim: str  # What is proved
-    needs: tuple[str, ...]  # What that takes for granted, and the spec as it stands does not
-    sha256: str  # Of that spec
-    new_gains: bool  # Whether its gains are designed anew, and are others
+    needs: tuple[str, ...]  # Further assumptions
+    sha256: str  # Hash of the changed spec
+    new_gains: bool  # True if the design has other gains
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +75,8 @@ class Blocked:
 
     proved: tuple[Proved, ...]  # What is proved instead, the least given up first
     tried: int  # How many lines were looked at
-    lines: int  # How many there are
-    unbounded: bool  # Whether something disturbs, whose effect was left out of all of it
+    lines: int  # All candidates
+    unbounded: bool  # True if disturbances were left out
     work: float  # Spent on it, in units
 
 
@@ -97,7 +92,7 @@ class _Decided:
 def find_blocked(
     result: Result, limits: Limits | None = None, progress: Progress = silent
 ) -> Blocked | None:
-    """Find which lines of a spec keep it from being proved; None unless it is inconclusive.
+    """Find the lines that keep a spec from a proof; None with another verdict.
 
     Less than half of the budget of the limits is spent. The decay rate is not optimized, and no
     bound under disturbances is looked for.
@@ -108,7 +103,7 @@ def find_blocked(
 
 
 class _Search:
-    """Tries changes of a spec one after the other, within a budget of work."""
+    """A search through changes of a spec, within a budget of work."""
 
     def __init__(self, result: Result, limits: Limits, progress: Progress) -> None:
         self._result, self._progress = result, progress
@@ -133,7 +128,7 @@ class _Search:
         return Blocked(proved, len(lines), len(found), unbounded, self._spent)
 
     def _calmer(self, until: float) -> tuple[Proved, ...]:
-        """Return what is proved when all gains are changed together, the least that is found.
+        """Return the smallest proved change of all gains together.
 
         The calmest are tried first, and may take half of the work: if they do not help, none do.
         """
@@ -143,12 +138,12 @@ class _Search:
         for left, lines in zip(range(len(ways), 0, -1), ways, strict=True):
             if lines and self._decide(_least(lines), (until - self._spent) / left):
                 break
-        return (self._least_proved(lines),)
+        return (self._proved([(line, line.weakest, 0) for line in lines]),)
 
     def _single(
         self, lines: Sequence[SpecRelaxation], find: float, stretch: float
     ) -> tuple[Proved, ...]:
-        """Return what is proved when one line asks for less, the least given up first.
+        """Return the proved changes of one line, the smallest first.
 
         Lines are found up to the work `find`, and how far they go up to the work `stretch`, in all.
         """
@@ -164,7 +159,7 @@ class _Search:
         return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
 
     def _furthest(self, line: SpecRelaxation, budget: float) -> tuple[RelaxationSteps, int]:
-        """Return how much of what a line asks for is proved, by halving.
+        """Return the proved part of a line, by bisection.
 
         The steps that matter most come first, and may take the most: of n that are left, each may
         take 2 / (n + 1) of the rest.
@@ -188,7 +183,7 @@ class _Search:
         return way, low
 
     def _decide(self, edits: Sequence[Edit], budget: float) -> _Decided | None:
-        """Take a changed spec all the way; None without a proof, or where it makes no system."""
+        """Certify a changed spec; None without a proof or without a system."""
         if budget <= 0:
             return None
         try:
@@ -207,7 +202,7 @@ class _Search:
         # If these are proved, so is the spec: other gains are chosen only with their proof.
         designed = design_at_least_cost(loaded)
         system = assemble_spec(loaded, designed)
-        # Two systems that differ in words only.
+        # Only words differ.
         own = self._result.certification.system
         if system == replace(own, name=system.name, assumptions=system.assumptions):
             return None
@@ -221,9 +216,6 @@ class _Search:
         if decided.verdict is not Verdict.PROVED:
             return None
         return _Decided(loaded, decided, gains_text(designed))
-
-    def _least_proved(self, lines: Sequence[SpecRelaxation]) -> Proved:
-        return self._proved([(line, line.weakest, 0) for line in lines])
 
     def _proved(self, lines: Sequence[tuple[SpecRelaxation, RelaxationSteps, int]]) -> Proved:
         edits = [line.edit(form, step) for line, form, step in lines]
@@ -276,7 +268,7 @@ def _least(lines: Sequence[SpecRelaxation]) -> list[Edit]:
 
 
 def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
-    """Say what keeps a spec from being proved, in at most five lines."""
+    """Write the changes that give a proof, in at most five lines."""
     some = counted(blocked.tried, "line")
     some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:
@@ -293,19 +285,17 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
 
 
 def _said(item: Proved, path: Path) -> str:
-    said = " together with ".join(_place(line, path) for line in item.lines)
+    said = " together with ".join(
+        f"{path}:{line.place.line}: {line_text(line)}" for line in item.lines
+    )
     said += "; gains are designed anew then, and differ" if item.new_gains else ""
     if item.needs and any(line.changes_model for line in item.lines):
         said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
     return said
 
 
-def _place(line: Blocking, path: Path) -> str:
-    return f"{path}:{line.place.line}: {line_text(line)}"
-
-
 def line_text(line: Blocking) -> str:
-    """Say how much of what a line asks for is proved, and what to write."""
+    """Write the proved part of a line, and its replacement."""
     beside = "".join(f", without {name}" for name in line.left_out)
     if line.word == WITHOUT:
         return f"without {line.line}{beside}"

@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """One spec, all the way through."""
+    """Spec, design and certificate."""
 
     loaded: LoadedSpec  # The spec and where it came from
     designed: Designed | None  # The plant and the gains that ship; None for given matrices
     certification: Certification  # The verdict with every attempt
-    certificate: Certificate | None  # What may be written to a file; None if nothing was shown
+    certificate: Certificate | None  # None without statements
 
     @property
     def design(self) -> ControllerDesign | None:
@@ -46,14 +46,14 @@ class Result:
 
         touched = () if self.designed is None else self.designed.spec.environments.values()
         given = (environment.lever_arm for environment in touched)
-        # Where a force is largest: at the shortest arm.
+        # The force is largest at the shortest arm.
         arm = min((length.exact for length in given if length is not None), default=None)
         system, statements = self.certification.system, self.certification.statements
         return tuple((statement, brief(statement, system, arm)) for statement in statements)
 
     @property
     def omits(self) -> tuple[str, ...]:
-        """What is not modelled, in a few words each."""
+        """Effects outside the model, in a few words each."""
         from nrs_design.certificates.catalogue import omitted
 
         return omitted(self.certification.granted)
@@ -61,7 +61,7 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """What a command sets about the search, over what the spec says; None leaves it."""
+    """Limits of the search from a command; None keeps those of the spec."""
 
     max_degree: int | None = None  # Highest degree of a polynomial function
     budget: float | None = None  # Work, in units
@@ -71,7 +71,7 @@ class Overrides:
 def search_limits(
     spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True
 ) -> Limits:
-    """Return how far the search goes: by default, as the spec says, or as a command sets it."""
+    """Return the limits of the search, from defaults, spec and command."""
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
     declared = None if spec.kind == "robot" else spec.certification
     for said in (declared, asked):
@@ -100,65 +100,55 @@ def certify_design(
     Where the goal `delay` asks for an older force than the spec declares, that is proved of it, if
     all goals that gains are chosen by are met then; it holds of the younger one.
     """
-    prover = _Prover(loaded, limits or search_limits(loaded.spec), progress)
+    from nrs_design.search.certify import certify
+
+    limits = limits or search_limits(loaded.spec)
+
+    def certified(designed: Designed | None) -> Certification:
+        with placed(loaded):
+            system = assemble_spec(loaded, designed)
+        return certify(system, method, limits, progress)
+
     older: tuple[Attempt, ...] = ()
     try:
         wide = None if designed is None else for_goal(designed)
         if designed is not None and wide is not None:
-            found = prover.certified(wide, method)
+            found = certified(wide)
             if (result := _of_older(designed, wide, found)) is not None:
                 return result
             older = tuple(replace(a, step=f"{a.step}, older force") for a in found.attempts)
     except (DesignError, AssemblyError):
-        pass  # What is not modelled is not proved.
-    found = prover.certified(designed, method)
-    points = ""
-    if found.is_open:
-        points, found = prover.at_points(designed, found)
+        pass  # Outside the model there is no proof.
+    found, points = certified(designed), ""
+    if found.is_open and designed is not None and designed.spec.sampling is not None:
+        points, found = _at_points(designed, found, limits, progress)
     found = replace(found, attempts=(*older, *found.attempts))
     return Result(loaded, designed, found, certificate_of(loaded, designed, found, points))
 
 
-@dataclass(frozen=True, slots=True)
-class _Prover:
-    """Takes designs of a spec to verdicts."""
+def _at_points(
+    designed: Designed, known: Certification, limits: Limits, progress: Progress
+) -> tuple[str, Certification]:
+    """Look for growth at points of the ranges, which their enclosure does not refute."""
+    from nrs_design.loop.assemble import POINTS, assemble
+    from nrs_design.search.certify import certify
 
-    loaded: LoadedSpec
-    limits: Limits
-    progress: Progress
-
-    def certified(self, designed: Designed | None, method: Method) -> Certification:
-        from nrs_design.search.certify import certify
-
-        with placed(self.loaded):
-            system = assemble_spec(self.loaded, designed)
-        return certify(system, method, self.limits, self.progress)
-
-    def at_points(
-        self, designed: Designed | None, known: Certification
-    ) -> tuple[str, Certification]:
-        """Look for growth at points of the ranges, which their enclosure does not refute."""
-        from nrs_design.loop.assemble import POINTS, assemble
-        from nrs_design.search.certify import certify
-
-        if designed is None or designed.spec.sampling is None:
-            return "", known
-        limits = replace(self.limits, budget=self.limits.budget / 4)
-        for points in POINTS:
-            with placed(self.loaded):
-                system = assemble(designed.spec, designed.plant, designed.design, points=points)
-            if system.modes == known.system.modes:
-                continue
-            found = certify(system, Method.PERIOD, limits, self.progress)
-            tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
-            known = replace(known, attempts=(*known.attempts, *tried))
-            if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
-                return points, replace(found, attempts=known.attempts)
-        return "", known
+    limits = replace(limits, budget=limits.budget / 4)
+    for points in POINTS:
+        with placed(designed.loaded):
+            system = assemble(designed.spec, designed.plant, designed.design, points=points)
+        if system.modes == known.system.modes:
+            continue
+        found = certify(system, Method.PERIOD, limits, progress)
+        tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
+        known = replace(known, attempts=(*known.attempts, *tried))
+        if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
+            return points, replace(found, attempts=known.attempts)
+    return "", known
 
 
 def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:
-    """Return what a proof for an older force says of a design; None where a goal is not met."""
+    """Return the result for an older force, or None if it misses a goal."""
     assert wide.spec.sampling is not None, "a delay is of samples"
     good = tuple(item for item in found.statements if item.shows.is_good)
     status = common_quadratic_of(found.system, good)
@@ -182,12 +172,9 @@ def meets_goals(result: Result) -> bool:
 
 
 def certificate_of(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    certification: Certification,
-    points: str = "",
+    loaded: LoadedSpec, designed: Designed | None, certification: Certification, points: str = ""
 ) -> Certificate | None:
-    """Return what may be written to a file; None if nothing was shown."""
+    """Return the certificate; None without statements."""
     if not certification.statements:
         return None
     return Certificate(
@@ -203,7 +190,7 @@ def certificate_of(
 
 
 def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
-    """Return what a certificate that was checked shows, as if it had been found just now."""
+    """Return a checked certificate as the result of a search."""
     from nrs_design.certificates.certificate import verdict_of
     from nrs_design.search.family import floats_in_silence, rate_limit
 
@@ -236,9 +223,7 @@ def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
 
 
 def assemble_spec(
-    loaded: LoadedSpec,
-    designed: Designed | None,
-    scale: Fraction = Fraction(1),
+    loaded: LoadedSpec, designed: Designed | None, scale: Fraction = Fraction(1)
 ) -> SwitchedSystem:
     """Assemble either kind of spec, with its ranges stretched by a scale."""
     from nrs_design.loop.assemble import assemble, assemble_matrices
@@ -262,7 +247,7 @@ def run_verification(file: Path, result: Result) -> Verification:
 
 
 def find_relief(result: Result) -> tuple[str, ...]:
-    """Return what would hold of a refuted design whose contacts are too stiff for its gains.
+    """Return advice on gains for a refuted design with too stiff contacts.
 
     It may be refuted in kept contact alone.
     """

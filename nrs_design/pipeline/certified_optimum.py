@@ -1,17 +1,13 @@
 """The cheapest gains whose proof meets the goals of a certificate: all controllers jointly.
 
-The cost is that of `nrs_design.design.impedance_optimum`, summed over the controllers. What a
-proof shows is known at a design, with its slope (`nrs_design.search.rate_slope`); between two
-designs it is taken as linear in the logarithms of the gains, within a region that shrinks where
-that was wrong. Gains are rounded to the digits that ship, and the proof of these is searched and
-checked as that of any spec.
+The cost is summed over the controllers. Between two designs, what a proof shows is taken as linear
+in the logarithms of the gains (`nrs_design.search.rate_slope`), within a region that shrinks where
+that was wrong. The proof of rounded gains is searched and checked as that of any spec.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,36 +35,14 @@ from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, constraints_of,
 from nrs_design.progress import Progress, silent
 
 if TYPE_CHECKING:
-    from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.trust_region import ConstrainedOptimum, ConstrainedProblem, Evaluation
     from nrs_design.spec import Quantity
 
-# Roundings that are proved at most.
-MOST_ROUNDINGS = 4
+MOST_ROUNDINGS = 4  # Roundings that are proved at most
 # Where the proof falls short, there is more room for roundings.
 ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
-# A goal that is missed by no more than this share may be met by rounding.
-NEAR = 5e-3
-# What costs less does not bind.
-LEAST_PRICE = 1e-4
-
-
-@dataclass(frozen=True, slots=True)
-class SteeredGoal:
-    """A goal of the certificate that gains were chosen by."""
-
-    key: str  # In the spec
-    wanted: Fraction  # In SI units
-    binds: bool  # Whether gains would be cheaper without it
-    # What one more in SI units costs, in first order; None where the goal does not bind, or where
-    # what it asks for is counted in whole samples.
-    price: float | None
-
-    @property
-    def price_of_a_percent(self) -> float | None:
-        """What it costs to ask for one per cent more."""
-        return None if self.price is None else float(self.wanted) / 100 * self.price
+NEAR = 5e-3  # A goal that is missed by no more than this share may be met by rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +50,11 @@ class CertifiedOptimum:
     """The gains that were found, with their proof."""
 
     result: Result  # Of the spec with these gains; its certificate has been checked exactly
-    gains: Written  # What a spec would say of the free ones
+    gains: Written  # Free gains, as a spec writes them
     cost: float  # Summed over the controllers
     free_cost: float  # The least without goals of the certificate
-    # The best decay rate there in floating point, 1/s; None where it was not looked for.
+    # Best decay rate of these gains in floating point, 1/s; None without a search.
     free_rate: float | None
-    goals: tuple[SteeredGoal, ...]
     tried: int  # Designs whose rate was found
     # Gains that `design.free` names and that are on a bound, and on which.
     at_bounds: tuple[tuple[str, str], ...] = ()
@@ -95,7 +68,7 @@ def run_certified_optimum(
     These the design has; they are taken where any function proves the goals of them.
     """
     with placed(designed.loaded):
-        wanted_age(designed)  # Refuses what is not modelled.
+        wanted_age(designed)  # Refuses ages outside the model.
     try:
         return find_certified_optimum(designed, analysis, progress)
     except DesignError:
@@ -109,9 +82,8 @@ def find_certified_optimum(
 ) -> CertifiedOptimum:
     """Choose the free gains of all controllers at once, with their proof; at least one goal steers.
 
-    Where a mass may be zero, the best without masses and the best with them are compared: without,
-    a force acts at once, else a sample later. Where none are proved, the `DesignError` names the
-    nearest.
+    Where a mass may be zero, the best without and with masses are compared: without, a force acts
+    at once, else a sample later. Without a proof, the `DesignError` names the nearest.
     """
     with placed(designed.loaded):
         wide, items = designed, analysis
@@ -137,11 +109,9 @@ def _at_least_cost(
     gains = next(branches, None)
     if gains is None or not meets_goals(result):
         return None
-    one, given = gains.of(designed.design), designed.spec.goals
-    wanted = [] if given is None else [(key, getattr(given, key)) for key in STEERING]
-    goals = tuple(SteeredGoal(key, goal.exact, False, None) for key, goal in wanted if goal)
+    one = gains.of(designed.design)
     cost = gains.cost(one.x)
-    return CertifiedOptimum(result, one.written, cost, cost, None, goals, 0)
+    return CertifiedOptimum(result, one.written, cost, cost, None, 0)
 
 
 class _Search:
@@ -177,7 +147,6 @@ class _Search:
                     self.gains.cost(one.x),
                     self.gains.cost(free),
                     free_rate,
-                    tuple(self._goals(found.shadow_prices)),
                     evaluations,
                     self.gains.at_bounds(found.last.x),
                 )
@@ -185,7 +154,7 @@ class _Search:
         raise self._unreachable(found.last, in_floats=rooms != ROOMS[0])
 
     def _check_steerable(self) -> None:
-        """Refuse what no form for all modes could prove, whatever the gains."""
+        """Refuse systems without a common form, for any gains."""
         from nrs_design.search.rate_slope import may_have_slope
 
         wide = self.gains.designed
@@ -215,17 +184,6 @@ class _Search:
             found = max(found, other, key=lambda one: float(one.last.values.min()))
         return problem, first, found
 
-    def _goals(self, prices: Array) -> Iterator[SteeredGoal]:
-        """Yield the goals that steered, with what they cost."""
-        found = {
-            constraint.key: (bool(price > LEAST_PRICE), float(price) / constraint.one)
-            for constraint, price in zip(self.constraints, prices, strict=True)
-        }
-        for key, wanted in self.wanted.items():
-            # An age is asked for by the modes; what binds is the decay that is to be shown of them.
-            binds, price = found.get(key, (found[self.constraints[0].key][0], None))
-            yield SteeredGoal(key, wanted.exact, binds, price if binds else None)
-
     def _proved(
         self, found: ConstrainedOptimum, problem: ConstrainedProblem
     ) -> tuple[Result, RoundedGains] | None:
@@ -238,21 +196,16 @@ class _Search:
                 near.append((rank, one))
         near.sort(key=lambda pair: pair[0])
         for _, one in near[:MOST_ROUNDINGS]:
-            design = self.gains.shipping(one, last.x)
-            if (result := self._certified(design)) is not None:
+            designed = replace(self.given, design=self.gains.shipping(one, last.x))
+            # After a failed proof, other gains cost less than other functions.
+            limits = replace(search_limits(designed.spec), decay_rate=None)
+            result = certify_design(designed.loaded, designed, limits=limits)
+            if meets_goals(result):
                 return result, one
         return None
 
-    def _certified(self, design: ControllerDesign) -> Result | None:
-        """Certify the spec with a design; None if a goal that steers is not met."""
-        designed = replace(self.given, design=design)
-        # Where the first proof falls short, other gains are nearer than other functions.
-        limits = replace(search_limits(designed.spec), decay_rate=None)
-        result = certify_design(designed.loaded, designed, limits=limits)
-        return result if meets_goals(result) else None
-
     def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
-        """Say which goal gains miss, and how near they come."""
+        """Name the missed goal, and the nearest gains."""
         worst = self.constraints[int(np.argmin(last.values))]
         value, wanted = float(last.values.min()), self.wanted.get(worst.key)
         reached = worst.number(value)

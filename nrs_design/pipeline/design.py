@@ -1,4 +1,4 @@
-"""From a spec to its plant, its gains, and what they achieve, also for an older force."""
+"""Plant, gains and analysis of a spec, also for an older force."""
 
 from __future__ import annotations
 
@@ -21,11 +21,8 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 
-# What other kinds of specs are for.
-_FOR_KIND = {
-    "robot": "`nrs-design robot`",
-    "switched-system": "`nrs-design certify-switching`",
-}
+# Commands for other kinds of specs.
+_FOR_KIND = {"robot": "`nrs-design robot`", "switched-system": "`nrs-design certify-switching`"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +30,8 @@ class Designed:
     """An interaction design with all that follows from its spec alone."""
 
     loaded: LoadedSpec  # The spec and where it came from
-    spec: InteractionDesignSpec  # What it says
-    plant: Plant  # That it describes; the later stages take this one
+    spec: InteractionDesignSpec  # Content of the spec
+    plant: Plant  # Plant of the spec, for all later stages
     design: ControllerDesign  # The gains that ship
 
 
@@ -136,7 +133,7 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
 
 
 def wanted_age(designed: Designed) -> int | None:
-    """Return the age of the force, in samples, that the goal `delay` asks for beyond the declared.
+    """Return the age of the force for the goal `delay`, in samples, if it is not declared.
 
     None where the declared ages reach the goal.
     """
@@ -156,7 +153,7 @@ def wanted_age(designed: Designed) -> int | None:
 
 
 def for_goal(designed: Designed) -> Designed | None:
-    """Return a design whose spec declares what its goal `delay` asks for; None if it does."""
+    """Return a design that declares the age for its goal `delay`; None if it already does."""
     age = wanted_age(designed)
     return None if age is None else declaring(designed, age)
 
@@ -165,8 +162,5 @@ def declaring(designed: Designed, age: int) -> Designed:
     """Return a design whose spec declares ages of the force up to this one, in samples."""
     assert designed.spec.sampling is not None, "a delay is of samples"
     least = designed.spec.sampling.delay[0]
-    return _with_spec(designed, designed.spec.declaring_ages((min(least, age), age)))
-
-
-def _with_spec(designed: Designed, spec: InteractionDesignSpec) -> Designed:
+    spec = designed.spec.declaring_ages((min(least, age), age))
     return replace(designed, loaded=replace(designed.loaded, spec=spec), spec=spec)

@@ -1,8 +1,7 @@
-"""The gains that a proof may choose, of all controllers, as one point.
+"""The free gains of all controllers as one point of logarithms.
 
-A point holds their logarithms: virtual mass and damping of the impedance controllers, and what
-``design.free`` names beside. Of its gains, either all virtual masses are zero, or none: they are
-different laws.
+They are Mt and Bt of the impedance controllers, and the gains in ``design.free``. All virtual
+masses are zero, or none is: these are different laws.
 """
 
 from __future__ import annotations
@@ -43,10 +42,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # A virtual mass that may be zero is zero, or at least this share of the largest.
 LEAST_MASS = Fraction(1, 1000)
-# Points at which it is remembered what controllers are optimized for.
-MOST_KNOWN = 64
-# What a goal may be missed by in floating point.
-MISSED = 1e-6
+MOST_KNOWN = 64  # Points whose problems are cached
+MISSED = 1e-6  # Tolerance of a goal in floating point
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +56,7 @@ class RoundedGains:
 
     @property
     def written(self) -> Written:
-        """What a spec says of them."""
+        """Texts of the gains in a spec."""
         return {name: text for name, (_, text) in self.gains.items()}
 
 
@@ -136,7 +133,7 @@ class FreeGains:
         """Return the cost of each impedance controller at a point."""
         from nrs_design.design.impedance_optimum import impedance_cost
 
-        # Most gains move no problem, and a search asks for the same few over and over.
+        # Most gains change no problem, and a search repeats the same few points.
         problems = known_problems(self, tuple(np.where(self._moves_cost, x, self.low)))
         gains, costs = self.gains(x), {}
         for item, problem in zip(self.analysis.impedance, problems, strict=True):
@@ -191,7 +188,7 @@ class FreeGains:
         return all((mass == 0) == self.massless for mass in masses)
 
     def of(self, design: ControllerDesign) -> RoundedGains:
-        """Return the gains of such a design, in as few digits as make them."""
+        """Return the gains of a design, with as few digits as possible."""
         laws = design.laws
         own = {one.name: laws[one.controller].gains[one.gain] for one in self.coordinates}
         point = np.log([float(value) for value in own.values()])
@@ -219,7 +216,7 @@ class FreeGains:
         return replace(found, controllers=tuple(controllers))
 
     def said(self, x: Array) -> str:
-        """Write the gains at a point for people: those of impedance controllers, and free ones."""
+        """Write the impedance gains and the free gains at a point."""
         gains, units = self.gains(x), self.designed.design.units
         shown = {item.name: dict.fromkeys(BOUNDED) for item in self.analysis.impedance}
         for one in self.coordinates:
@@ -239,7 +236,7 @@ class FreeGains:
 
     @cached_property
     def _moves_cost(self) -> NDArray[np.bool_]:
-        """Which coordinates the cost depends on beside Mt and Bt."""
+        """Mask of coordinates that change the cost, beside Mt and Bt."""
         costing = {item.name for item in self.analysis.impedance}
         costing |= {MOTION} if costing else set()
         moves = [one.given is not None and one.controller in costing for one in self.coordinates]
@@ -251,7 +248,7 @@ class FreeGains:
         return replace(problem, mass_bounds=(0.0, 0.0) if self.massless else (least, high))
 
     def problems(self, x: Array) -> Iterator[ImpedanceProblem]:
-        """Yield what each impedance controller is optimized for at the other gains of a point."""
+        """Yield the problem of each impedance controller at the other gains of a point."""
         from nrs_design.design.laws.impedance import impedance_problem
 
         design = self._design(x, Fraction)
@@ -285,7 +282,7 @@ class FreeGains:
         return there if better else start
 
     def _spared_by_others(self, x: Array) -> list[float]:
-        """Return the same of controllers that what `design.free` names changes."""
+        """Return the margins of goals of controllers with or after freed gains."""
         from nrs_design.design.laws import LAW_DESIGNS
 
         named = {one.controller for one in self.coordinates if one.given is not None}

@@ -1,4 +1,4 @@
-"""One gain that may be chosen: its bounds, and how a spec gives it."""
+"""One free gain: bounds, and text in a spec."""
 
 from __future__ import annotations
 
@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from nrs_design.spec import GainSpec, Quantity
 
 
-# A logarithm that is nearer to that of a bound is at the bound.
-CLOSE = 1e-6
-# The same of one that a search has stopped at.
-NEAR = 1e-3
-# The gains that are free by bounds of their own.
-BOUNDED = ("Mt", "Bt")
+CLOSE = 1e-6  # Largest distance of a logarithm from a bound that counts as the bound
+NEAR = 1e-3  # The same after a search
+BOUNDED = ("Mt", "Bt")  # The gains that are free by bounds of their own
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,7 @@ class GainCoordinate:
     unit: str
     low: Fraction  # SI units
     high: Fraction
-    # The bounds as the spec writes them; None where they are factors on a given gain.
+    # Bounds as in the spec; None for factors on a given gain.
     written: tuple[Quantity, Quantity] | None = None
     given: Fraction | None = None  # The gain that the factors are on
 
@@ -70,7 +67,7 @@ class GainCoordinate:
         found = {round_significant(near, digits) for near in neighbors(value, digits)}
         inside = sorted(v for v in found if self.low <= v <= self.high and v > 0)
         if self.written is None:
-            # Bounds may be nearer to each other than two numbers of so few digits.
+            # Between close bounds there may be no number of so few digits.
             at = min(inside, key=lambda v: abs(v - Fraction(value)), default=self.given)
             assert at is not None, "as factors are on a given gain"
             inside = [at]
@@ -107,5 +104,5 @@ def freed_gains(designed: Designed) -> Iterator[GainCoordinate]:
                 yield GainCoordinate(name, gain, units[name][gain], low, high, given=at)
 
 
-# What ships of every gain that was chosen, with its unit, by controller and name.
+# Texts of chosen gains with units, by controller and name.
 Written = Mapping[tuple[str, str], str]

@@ -8,32 +8,28 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.spec.misses import MOST_STATES, MissRuleSpec
 
 if TYPE_CHECKING:
     from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.spec.sampling import SamplingSpec
 
 MARGIN_BUDGET = 10.0
-# More misses in a row are not tried.
-MOST_IN_A_ROW = 64
 
 
 @dataclass(frozen=True, slots=True)
 class ProofMargins:
-    """How far a proof reaches, as far as that was asked for."""
+    """Margins of a proof; None without a request."""
 
-    loop: MarginBrackets | None = None  # Of delay, period and disturbances
-    box: Bracket | None = None  # Of the declared ranges
-    dwell: Bracket | None = None  # Of the time between switches
-    misses: Bracket | None = None  # Of the number of deadlines that may be missed
+    loop: MarginBrackets | None = None  # Margins of delay, period and disturbances
+    box: Bracket | None = None  # Margin of the ranges
+    dwell: Bracket | None = None  # Margin of the dwell time
 
 
 def run_proof_margins(
@@ -44,67 +40,35 @@ def run_proof_margins(
     margin: bool,
     shortest_dwell: bool,
 ) -> ProofMargins:
-    """Find the margins that a command asks for; the decay rate is not optimized.
+    """Find the requested margins, without optimizing the decay rate.
 
     `margin`: those of ranges, delay, period and disturbances; of ranges alone, a spec must have
-    some. `shortest_dwell`: that of the time between switches, in discrete time, where nothing else
-    changes between two of them and no longest dwell time bounds it. Else a `DesignError`.
+    some. `shortest_dwell`: that of the time between switches, in continuous time without longest
+    dwell times. Else a `DesignError`.
     """
+    from nrs_design.search.certify import certify
+    from nrs_design.search.margin import find_margin, find_shortest_dwell
+
+    loaded, known = result.loaded, result.certification
     # Before minutes of work.
-    rule = _rule_for_misses(result)
-    if margin and rule is None and not _has_loop(result):
+    if margin and not _has_loop(result):
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
-    # Of many searches, for each a proof is enough, whatever its decay rate.
+    # Each of many searches needs a proof only, with any decay rate.
     quick = replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
-    ranged = result.loaded.spec.has_ranges
-    return ProofMargins(
-        loop=_run_loop(result, quick, progress) if margin else None,
-        box=_run_box(result, quick, progress) if margin and ranged else None,
-        dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
-        misses=_run_misses(rule, result, quick, progress) if margin and rule else None,
-    )
-
-
-def _rule_for_misses(result: Result) -> MissRuleSpec | None:
-    """Return how many deadlines may be missed, if a spec says so."""
-    if result.designed is not None:
-        sampling = result.designed.spec.sampling
-        return None if sampling is None else sampling.misses
-    spec = result.loaded.spec
-    return spec.misses if spec.kind == "switched-system" else None
-
-
-def _run_misses(rule: MissRuleSpec, result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the most misses in the same window, or in a row, with a proof."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_most_misses
-
-    declared, of = rule.window
-
-    def assemble(number: Fraction) -> SwitchedSystem:
-        changed = rule.with_misses(int(number))
-        if (many := changed.states) > MOST_STATES:
-            raise AssemblyError(f"{many} states, and at most {MOST_STATES} are built")
-        return _with_rule(result, changed)
-
-    most = max(declared, MOST_IN_A_ROW) if rule.consecutive is not None else of - 1
-    known = result.certification
-    return find_most_misses(
-        declared, most, assemble, partial(certify, limits=limits), known, progress
-    )
-
-
-def _with_rule(result: Result, rule: MissRuleSpec) -> SwitchedSystem:
-    """Return the system of a spec, undisturbed, under another rule for misses."""
-    from nrs_design.loop.assemble import assemble_matrices
-
-    if result.designed is not None:
-        return _with_sampling(result.designed, {"misses": rule})
-    spec = result.loaded.spec
-    assert spec.kind == "switched-system"
-    return assemble_matrices(spec.model_copy(update={"misses": rule}))
+    decide = partial(certify, limits=quick)
+    loop = box = dwell = None
+    if margin:
+        loop = _run_loop(result, quick, progress)
+    if margin and loaded.spec.has_ranges:
+        # Around the nominal values; the design is kept.
+        stretched = partial(assemble_spec, loaded, result.designed)
+        box = find_margin(stretched, decide, known, progress)
+    if shortest_dwell:
+        # Whatever dwell time the spec declares.
+        dwell = find_shortest_dwell(known.system, decide, known, progress)
+    return ProofMargins(loop, box, dwell)
 
 
 def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:
@@ -113,15 +77,6 @@ def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> Switche
     sampling = designed.spec.sampling.model_copy(update=changes)
     changed = designed.spec.model_copy(update={"sampling": sampling, "disturbances": None})
     return assemble_spec(designed.loaded, replace(designed, spec=changed))
-
-
-def _run_box(result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the largest box around the nominal values that still has a proof; the design is kept."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_margin
-
-    assemble_at = partial(assemble_spec, result.loaded, result.designed)
-    return find_margin(assemble_at, partial(certify, limits=limits), result.certification, progress)
 
 
 def _refuse_box(result: Result) -> None:
@@ -137,7 +92,7 @@ def _refuse_box(result: Result) -> None:
 
 
 def _run_loop(result: Result, limits: Limits, progress: Progress) -> MarginBrackets | None:
-    """Find how far delay, period and disturbances stretch; None where a spec has none of them."""
+    """Find the margins of delay, period and disturbances; None without these."""
     from nrs_design.search.margin import MarginBrackets
 
     if result.designed is None or not _has_loop(result):
@@ -197,15 +152,6 @@ def _command_margin(result: Result) -> CommandMargin | None:
     return None if found is None else command_margin(found, worst_against(system, found).value)
 
 
-def _run_dwell(result: Result, limits: Limits, progress: Progress) -> Bracket:
-    """Find the shortest dwell time with a proof, whatever dwell time the spec declares."""
-    from nrs_design.search.certify import certify
-    from nrs_design.search.margin import find_shortest_dwell
-
-    known = result.certification
-    return find_shortest_dwell(known.system, partial(certify, limits=limits), known, progress)
-
-
 def _refuse_dwell(result: Result) -> None:
     """Refuse specs to which no dwell time applies, by the rule for a spec that declares one."""
     loaded, system = result.loaded, result.certification.system
@@ -215,7 +161,7 @@ def _refuse_dwell(result: Result) -> None:
             path=loaded.path,
             remedy="declare a dwell_time, and certify that",
         )
-    assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
+    assert loaded.spec.kind != "robot"  # A robot spec has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():
         raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)
     if len(system.lasting_modes()) < len(system.modes):

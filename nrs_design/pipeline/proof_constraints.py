@@ -1,4 +1,4 @@
-"""What a proof would show of a design, in floating point, and how that changes with the gains."""
+"""Provable numbers of a design in floating point, and their slopes."""
 
 from __future__ import annotations
 
@@ -20,14 +20,10 @@ if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.spec import GoalsSpec
 
-# How far a coordinate moves for a slope.
-STEP = 1e-3
-# The value where floating point finds no number.
-NOTHING = -1e4
-# A rate that only has to be positive is at least so much, 1/s.
-LEAST_RATE = 1e-2
-# Roundings take a little: so much more is asked for of a rate, and less of a bound.
-ROOM = (5e-4, 4e-3)
+STEP = 1e-3  # How far a coordinate moves for a slope
+NOTHING = -1e4  # The value where floating point finds no number
+LEAST_RATE = 1e-2  # Least decay rate, 1/s
+ROOM = (5e-4, 4e-3)  # Reserve for roundings: of a rate, and of a bound
 
 # Of a system, about what is expected, and what it may take: what is found; None if nothing is.
 Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue | None"]
@@ -37,8 +33,8 @@ Find = Callable[["SwitchedSystem", "float | None", Allowance], "ConstraintValue 
 class ConstraintValue:
     """A number of a design, held against what is wanted."""
 
-    value: float  # Not negative where it is met; one is what is wanted
-    change: Callable[[SwitchedSystem], float]  # By how much it is larger for a system nearby
+    value: float  # Not negative if met; one is the scale
+    change: Callable[[SwitchedSystem], float]  # Change of the value for a system nearby
     said: str  # The number, for people
 
 
@@ -46,13 +42,11 @@ class ConstraintValue:
 class ProofConstraint:
     """A number that a proof is to show."""
 
-    key: str  # Of the goal
+    key: str  # Key of the goal
     title: str  # For people
     unit: str
     find: Find
-    number: Callable[[float], float]  # That a value stands for, in SI units
-    # By how much more a number is asked for where the value is one less, in SI units.
-    one: float
+    number: Callable[[float], float]  # Number for a value, in SI units
 
 
 def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
@@ -80,12 +74,12 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
             f"decay rate {found.rate:.4g} 1/s",
         )
 
-    return ProofConstraint("decay_rate", "decay rate", "1/s", find, number, scale)
+    return ProofConstraint("decay_rate", "decay rate", "1/s", find, number)
 
 
 def force_constraint(wanted: float) -> ProofConstraint:
     """Return the constraint on the least bound on the force, in N m, under all disturbances."""
-    share: float | None = None  # Of the disturbances, that was the best last time
+    share: float | None = None  # Best share of the disturbances in the last solution
 
     def find(
         system: SwitchedSystem, expected: float | None, allowance: Allowance
@@ -106,14 +100,14 @@ def force_constraint(wanted: float) -> ProofConstraint:
         )
 
     return ProofConstraint(
-        "peak_torque", "bound on the force", "N*m", find, lambda value: wanted * exp(-value), wanted
+        "peak_torque", "bound on the force", "N*m", find, lambda value: wanted * exp(-value)
     )
 
 
 def constraints_of(
     goals: GoalsSpec | None, room: float = 0.0, room_of_bounds: float = 0.0
 ) -> tuple[ProofConstraint, ...]:
-    """Return what the goals ask of a proof: a decay first, without which there is none.
+    """Return the constraints of the goals, the decay first.
 
     So much more is asked for of a rate, as a share, and so much less of a bound.
     """

@@ -1,4 +1,4 @@
-"""The one rule for which gains a spec has, and what is done with a spec by its file alone."""
+"""The rule for the gains of a spec, and runs of a spec by its file."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Recorded:
     """Where the certificate of a spec is recorded."""
 
     file: Path
-    id: str | None = None  # As a lock file names it; None where none does
+    id: str | None = None  # Id in a lock file; None without one
 
 
 def run_design(
@@ -39,9 +39,9 @@ def run_design(
 ) -> Designed | None:
     """Build the plant of a spec and choose its gains; None for given matrices.
 
-    This is the one rule for which gains a spec has: those of the least cost. Where goals of a proof
-    choose the free ones, these are `recorded` in a certificate that holds for this very spec, or
-    the cheapest that are proved to meet the goals, if such are found.
+    This is the one rule for the gains of a spec: those of the least cost. Where goals of a proof
+    choose the free ones, these are `recorded` in a certificate for this very spec, or the cheapest
+    that are proved to meet the goals, if any.
     """
     designed = design_at_least_cost(loaded)
     if designed is None:
@@ -78,7 +78,7 @@ def run_certification(
     limits: Limits | None = None,
     progress: Progress = silent,
 ) -> Result:
-    """Take a spec all the way to a verdict; method and limits are by default as the spec says.
+    """Certify a spec; method and limits are by default those of the spec.
 
     A spec without a design is a `DesignError`, modes that make no switched system are an
     `AssemblyError`, and a search that the clock stopped is a `ClockError`.
@@ -101,7 +101,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
 
 
 def run_kept(loaded: LoadedSpec, recorded: Recorded, progress: Progress = silent) -> Result | None:
-    """Return what is recorded for a spec, checked exactly; None if a search could show more."""
+    """Return the recorded result of a spec, checked exactly; None if a search could show more."""
     from nrs_design.certificates.goals import certified_goals
     from nrs_design.certificates.verify import find_foreign, read_document
     from nrs_design.controllers.gains import steering_goals
@@ -115,7 +115,7 @@ def run_kept(loaded: LoadedSpec, recorded: Recorded, progress: Progress = silent
         return None
     verdict, goals = result.certification.verdict, certified_goals(loaded.spec, result.certificate)
     proved = verdict is Verdict.PROVED and all(goal.met for goal in goals)
-    # Of gains that a search chooses, those that are refuted say nothing of others.
+    # A refutation of chosen gains says nothing about others.
     refuted = verdict is Verdict.REFUTED and not steering_goals(loaded.spec)
     return result if proved or refuted else None
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import axis_with
-from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed, run_analysis
@@ -33,20 +32,20 @@ class Simulated:
     """A scenario that has been simulated."""
 
     scenario: Scenario  # In SI
-    run: Run  # As far as it came
-    metrics: Mapping[str, Any]  # Of the run, in SI
+    run: Run  # Up to its end
+    metrics: Mapping[str, Any]  # Metrics of the run, in SI
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """How scenarios are run; None leaves what the spec says."""
+    """Settings of runs; None keeps those of the spec."""
 
     names: tuple[str, ...] = ()  # Which; empty for all
     # By default sampled where the spec has sampling or tissue is not linear, else exact.
     engine: str | None = None
-    period: float | None = None  # Of the sampled engine, in s; 2 ms where nothing says it
-    delay: int | None = None  # Age of its force samples, in samples; none where nothing says it
-    max_steps: int | None = None  # Of each run
+    period: float | None = None  # Period of the sampled engine, in s; 2 ms by default
+    delay: int | None = None  # Age of its force samples, in samples; zero by default
+    max_steps: int | None = None  # Limit of each run
     # Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     outer_period: float | None = None
 
@@ -54,7 +53,7 @@ class Runs:
 def run_scenarios(
     designed: Designed, wanted: Runs | None = None, progress: Progress = silent
 ) -> Iterator[Simulated]:
-    """Simulate scenarios of a spec one after the other; a spec without any has one of its own."""
+    """Simulate scenarios one by one; a spec without any has a default one."""
     wanted = wanted or Runs()
     with placed(designed.loaded):
         for scenario in scenarios_of(designed, wanted):
@@ -62,7 +61,7 @@ def run_scenarios(
 
 
 def run_judgement(designed: Designed) -> DesignAnalysis:
-    """Compute what a design achieves, with what its runs break of the limit of the torque."""
+    """Analyze a design, with doubts about torques of its runs."""
     found = run_analysis(designed)
     return replace(found, doubts=(*found.doubts, *_doubt_runs(designed)))
 
@@ -70,7 +69,7 @@ def run_judgement(designed: Designed) -> DesignAnalysis:
 def judged_if_stable(
     designed: Designed | None, tell: Callable[[str], object] = lambda _: None
 ) -> DesignAnalysis | None:
-    """Compute the same; None of no design, and where a nominal loop has no margins, as is told."""
+    """Analyze a design; None without a design, and, with a message, if a loop is unstable."""
     try:
         return None if designed is None else run_judgement(designed)
     except DesignError as error:
@@ -152,7 +151,7 @@ def scenarios_of(designed: Designed, wanted: Runs) -> list[Scenario]:
 
 
 def names_of(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
-    """Return the names of the scenarios that are wanted; a spec without any has one of its own."""
+    """Return the names of the wanted scenarios; a spec without any has a default one."""
     from nrs_design.simulation.build_scenario import DEFAULT
     from nrs_design.spec.faults import did_you_mean
 
@@ -172,19 +171,18 @@ class CertifiedBound:
     output: str
     unit: str
     level: float  # Not below what is proved
-    # What happens in the run that the proof says nothing about; empty if the bound holds for it.
-    uncovered: tuple[str, ...]
+    uncovered: tuple[str, ...]  # Events of the run outside the proof; empty if the bound holds
 
 
 @dataclass(frozen=True, slots=True)
 class CertifiedRate:
     """A certified rate of decay beside a run."""
 
-    rate: float  # Not better than what is proved: in 1/s, or the factor per sample
+    rate: float  # Conservative: in 1/s, or the factor per sample
     unit: str  # ``1/s``, or empty for a factor
-    attained: bool  # Whether it is proved itself, not only what is slower
+    attained: bool  # True if the rate itself is proved, not only slower ones
     start: float | None  # From when on nothing is commanded, in s; None where the run ends before
-    uncovered: tuple[str, ...]  # Why it is not about the run from then on; empty if it is
+    uncovered: tuple[str, ...]  # Reasons why the rate does not apply from then on; empty if it does
 
 
 def hold_bounds(
@@ -231,12 +229,9 @@ def hold_rate(
     )
 
 
-_REMEDY = "use `simulate` without --worst-case, with a scenario for each controller"
-
-
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """The worst runs that an adversary found, beside limits and certified bounds."""
+    """Worst runs of an adversary, beside limits and certified bounds."""
 
     system: SwitchedSystem  # That he played against
     runs: tuple[WorstRun, ...]  # One for each quantity: force, velocity and deflection
@@ -266,9 +261,7 @@ class WorstCase:
 
 
 def run_worst_case(
-    designed: Designed,
-    certificate: Certificate | None = None,
-    progress: Progress = silent,
+    designed: Designed, certificate: Certificate | None = None, progress: Progress = silent
 ) -> WorstCase:
     """Let an adversary choose everything that the spec leaves open, and keep the worst runs.
 
@@ -288,7 +281,7 @@ def run_worst_case(
         with placed(designed.loaded):
             raise DesignError(
                 f"no worst case is searched for this spec: {message}",
-                remedy=_REMEDY,
+                remedy="use `simulate` without --worst-case, with a scenario for each controller",
                 at=("controllers",),
             ) from error
     return WorstCase(

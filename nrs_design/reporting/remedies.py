@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.margin import Bracket
-    from nrs_design.spec import Spec
-    from nrs_design.spec.misses import MissRuleSpec
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
@@ -46,7 +44,7 @@ def remedies_section(
     if blocked is not None:
         why = blocked_lines(blocked, Path(result.loaded.path.name))
         blocks.append(Bullets("Why it is not proved", why))
-    lines = () if margins is None else tuple(margin_lines(margins, result.loaded.spec))
+    lines = () if margins is None else tuple(margin_lines(margins))
     if lines:
         said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
         blocks.append(Bullets("How far a proof reaches", said))
@@ -58,12 +56,11 @@ def remedies_section(
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
 
 
-def margin_lines(margins: ProofMargins, spec: Spec) -> Iterator[str]:
+def margin_lines(margins: ProofMargins) -> Iterator[str]:
     """Yield a sentence, in small letters and without its full stop, for each margin."""
     yield from _box_lines(margins)
     yield from _loop_lines(margins)
     yield from _dwell_lines(margins)
-    yield from _misses_lines(margins, spec)
 
 
 def _box_lines(margins: ProofMargins) -> Iterator[str]:
@@ -94,21 +91,6 @@ def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
         end = rounded_down(dwell.refuted, "s")
         refuted = f"; {end} and all shorter ones are refuted{_in(dwell.refuted_in)}"
     yield f"shortest dwell time: {proved}{refuted}"
-
-
-def _misses_lines(margins: ProofMargins, spec: Spec) -> Iterator[str]:
-    """State the most misses that are proved, and the fewest that are refuted."""
-    rule: MissRuleSpec | None
-    if spec.kind == "switched-system":
-        rule, what = spec.misses, "steps"
-    else:
-        sampling = spec.sampling if spec.kind == "interaction-design" else None
-        rule, what = None if sampling is None else sampling.misses, "periods"
-    if rule is None or margins.misses is None:
-        return
-    where = " in a row" if rule.of is None else f" of any {rule.of} {what} in a row"
-    said = _ends(margins.misses, str, f"proved up to *{where}", "refuted from * on")
-    yield f"most missed deadlines: {said}"
 
 
 def _loop_lines(margins: ProofMargins) -> Iterator[str]:

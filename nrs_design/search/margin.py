@@ -276,21 +276,6 @@ def find_longest_period(
     return axis.bracket(period, down, up, PERIOD_STEPS)
 
 
-def find_most_misses(
-    declared: int,
-    most: int,
-    assemble: Assemble,
-    certify: Certify,
-    known: Certification,
-    progress: Progress = silent,
-) -> Bracket:
-    """Bracket how many steps may be missed, up to `most`; `known` is on the declared number."""
-    start = Fraction(declared)
-    axis = MarginAxis(assemble, certify, progress, "misses", whole=True, found={start: known})
-    down = (Fraction(declared >> k) for k in range(1, declared.bit_length()))
-    return axis.bracket(start, down, _doubled(start, Fraction(most)))
-
-
 def find_shortest_dwell(
     system: SwitchedSystem, certify: Certify, known: Certification, progress: Progress = silent
 ) -> Bracket:

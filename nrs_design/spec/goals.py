@@ -1,99 +1,20 @@
-"""Design goals: what a design must achieve beside being stable.
-
-Goals for a frequency response over a band: what is felt, and how well the tool follows.
-"""
+"""Design goals: what a design must achieve beside being stable."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from pydantic import AfterValidator
 
-from nrs_design.proof.text import exact_text
-from nrs_design.spec import kinds
 from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import AboveOne, BelowTwo, Label, UnitFraction
-from nrs_design.spec.model import ParsedBy, SpecModel, at_most, optional, pair_schema, required
-from nrs_design.spec.quantity import Quantity, is_less
-from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
-
-_BAND_FORM = "write [lowest, highest], such as `[0 Hz, 2 Hz]`"
-
-
-def _read_band(value: object) -> tuple[Quantity, Quantity]:
-    """Read the lowest and the highest frequency."""
-    if not isinstance(value, tuple | list) or len(value) != 2:
-        raise fault("expected two frequencies", _BAND_FORM)
-    low, high = (
-        read_quantity(end, kinds.BANDWIDTH, i, positive=bool(i)) for i, end in enumerate(value)
-    )
-    return low, high
-
-
-Band = Annotated[
-    tuple[Quantity, Quantity], ParsedBy(_read_band, pair_schema(quantity_schema(kinds.BANDWIDTH)))
-]
-_BAND = "[lowest, highest] frequency, such as [0 Hz, 2 Hz]; sampled, below half the sampling rate"
-_ORDERED = Row[SpecModel](
-    "band",
-    lambda s: not is_less(*s.band) and tuple(end.text for end in s.band[::-1]),  # type: ignore[attr-defined]
-    "the band ends at {0!r}, not above its start {1!r}",
-    _BAND_FORM,
-)
-
-
-class TransparencySpec(SpecModel, stronger="smaller"):
-    """How little the surgeon shall feel of the robot, in free motion."""
-
-    max_impedance: field.Impedance = required(
-        "largest force of the hand over the velocity of the tool, N*m*s/rad"
-    )
-    band: Band = required(_BAND, "wider")
-    environment: ClassVar[str | None] = None  # Nothing is touched
-
-    checks = (_ORDERED,)
-
-    @property
-    def limit(self) -> Fraction:
-        """The largest impedance in N m s/rad."""
-        return self.max_impedance.exact
-
-    @property
-    def limit_text(self) -> str:
-        """The largest impedance as it is written."""
-        return self.max_impedance.text
-
-
-class AccuracySpec(SpecModel, stronger="smaller"):
-    """How well the tool shall follow the commanded velocity."""
-
-    max_error: UnitFraction = required(
-        "largest |1 - V/Vcmd|, a share of the commanded velocity, between 0 and 1"
-    )
-    band: Band = required(_BAND, "wider")
-    environment: Label | None = optional(
-        "what is touched meanwhile, elastic or Kelvin-Voigt; default: nothing",
-        stronger="unknown",
-        unsaid="other",
-    )
-
-    checks = (_ORDERED,)
-
-    @property
-    def limit(self) -> Fraction:
-        """The largest share."""
-        return self.max_error
-
-    @property
-    def limit_text(self) -> str:
-        """The largest share as a number."""
-        return exact_text(self.max_error)
-
+from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
+from nrs_design.spec.model import SpecModel, at_most, optional
+from nrs_design.spec.quantity import Quantity
 
 # What only one type of controller has.
 ONLY_FOR = {
@@ -102,14 +23,10 @@ ONLY_FOR = {
     "max_hand_effort": "impedance",
     "max_creep": "impedance",
     "max_creep_angle": "impedance",
-    "transparency": "impedance",
-    "accuracy": "impedance",
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
 OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay", "initial_force"})
-# A goal for a frequency response, decided by an enclosure of it over all ranges.
-ResponseGoal = TransparencySpec | AccuracySpec
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -157,14 +74,6 @@ class GoalsSpec(SpecModel, stronger="larger"):
         "largest angle that the robot creeps in free motion by errors of the force "
         "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
     )
-    transparency: TransparencySpec | None = optional(
-        "proved: what the hand feels of the robot in free motion over a band, such as "
-        "{max_impedance: 3 N*m*s/rad, band: [0 Hz, 1 Hz]}; impedance controllers only"
-    )
-    accuracy: AccuracySpec | None = optional(
-        "proved: how far the tool is off the commanded velocity over a band, such as "
-        "{max_error: 0.1, band: [0 Hz, 1 Hz]}; impedance controllers only"
-    )
     max_force_error: UnitFraction | None = at_most(
         "largest steady force error over the commanded force, between 0 and 1, no "
         "unit; force controllers only"
@@ -196,6 +105,6 @@ class GoalsSpec(SpecModel, stronger="larger"):
         ),
     )
 
-    def given(self) -> Iterator[tuple[str, Quantity | Fraction | str | ResponseGoal]]:
+    def given(self) -> Iterator[tuple[str, Quantity | Fraction | str]]:
         """Yield the goals that are set, by key."""
         return ((key, value) for key, value in self if value is not None)

@@ -16,14 +16,12 @@ from nrs_design.spec.faults import Location
 from nrs_design.spec.goals import (
     OF_THE_CERTIFICATE,
     ONLY_FOR,
-    AccuracySpec,
     GoalsSpec,
-    ResponseGoal,
 )
 from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION, NOT_CONTROLLERS, OF_CORNERS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.motion import commands_in
-from nrs_design.spec.quantity import PI_BETWEEN, Quantity
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.scenario_checks import LOGIC_CHECKS, SCENARIO_CHECKS
 from nrs_design.spec.switching import switching_checks
@@ -154,33 +152,6 @@ def _goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
             yield ("controllers", name, "goals"), _Goals(c.goals, {c.type}, True, creeps)
 
 
-def _responses(spec: Spec) -> Iterator[tuple[Location, ResponseGoal]]:
-    """Yield the goals for a frequency response, of all controllers and of each."""
-    for at, goals in _goals(spec):
-        for key in ("transparency", "accuracy"):
-            if (goal := getattr(goals.it, key)) is not None:
-                yield (*at, key), goal
-
-
-def _high_bands(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
-    """Yield where bands end that do not end below half the sampling rate, and that in Hz."""
-    if spec.sampling is not None:
-        half = 1 / spec.sampling.outer / 2
-        for at, goal in _responses(spec):
-            end = goal.band[1]
-            # With a pi that is not above.
-            if end.not_below / 2 / PI_BETWEEN[0] >= half:
-                yield (*at, "band"), (end.text, f"{float(half):g}")
-
-
-def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
-    """Yield the environments in which a tool shall follow."""
-    for at, goal in _responses(spec):
-        if isinstance(goal, AccuracySpec) and goal.environment is not None:
-            named = Reference("environment", goal.environment, spec.environments)
-            yield (*at, "environment"), named
-
-
 _GOALS = (
     Row[_Goals](
         "{0}",
@@ -277,7 +248,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     # Names.
     *each(_named_environments, NO_SUCH),
-    *each(_accurate_in, NO_SUCH),
     refuse(
         _not_freeable,
         "{0!r} has no gain {1} that can be free; those that can be: {2}",
@@ -350,11 +320,6 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     # Goals.
     *each(_goals, *_GOALS),
-    refuse(
-        _high_bands,
-        "the band reaches {0}, and half the sampling rate is {1} Hz",
-        "end it below {1} Hz, or sample more often",
-    ),
     # The bound holds for what is declared alone: under friction, of a robot that nobody moves.
     Row(
         "goals.peak_torque",

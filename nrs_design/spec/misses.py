@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import takewhile
 from math import comb
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Label, whole
@@ -81,11 +81,6 @@ class MissRuleSpec(SpecModel, stronger="larger"):
         """How many states its automaton has."""
         most, of = self.window
         return comb(of, most)
-
-    def with_misses(self, number: int) -> Self:
-        """Return the rule with another number of misses, smaller than the window."""
-        what = "at_most" if self.consecutive is None else "consecutive"
-        return self.model_copy(update={what: number})
 
     def said(self, of: str) -> str:
         """Say the rule in a few words, such as ``at most 2 of any 10 periods in a row``."""

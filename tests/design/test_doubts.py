@@ -15,9 +15,9 @@ from nrs_design.models.interval import Interval
 from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import run_judgement
 from nrs_design.spec import read_spec
-from tests.design.holder import USELESS
 from tests.design.motion_loops import PLACE, axis_with
 from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced
+from tests.tables import spec_text
 
 
 def warnings(path):
@@ -88,7 +88,7 @@ def test_given_gains_are_on_no_bound(tmp_path):
 def test_the_worst_fact_leads(tmp_path):
     """2.0 limits of the torque, 1.55 of the force error, 1.22 of the impedance; bounds are met."""
     path = tmp_path / "holder.nrs.yaml"
-    path.write_text(USELESS)
+    path.write_text(spec_text("useless"))
     said = [
         "simulated, insertion-and-withdrawal: a torque of 0.9968 N*m",
         "limit: steady force error over command 0.774",

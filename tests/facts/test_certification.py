@@ -9,7 +9,6 @@ from nrs_design.facts.certification import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.remedies import margin_lines
 from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
-from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE, document_of, run
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -39,9 +38,8 @@ def test_doubles_stay_on_the_side_that_is_true():
 
 
 def test_what_is_not_found_is_said():
-    spec = read_spec(SOFT_TISSUE).spec
-    assert list(margin_lines(ProofMargins(), spec)) == []
-    delay, period, command = margin_lines(ProofMargins(FOUND), spec)
+    assert list(margin_lines(ProofMargins())) == []
+    delay, period, command = margin_lines(ProofMargins(FOUND))
     assert "proved up to 2 samples, none is refuted: the search ends" in delay
     assert delay.endswith("without disturbances, no bound was looked at")
     assert "none is proved, about 0.333" in period

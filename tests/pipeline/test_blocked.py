@@ -11,8 +11,8 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked, li
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
-from tests.design.holder import USELESS
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE
+from tests.tables import spec_text
 
 EXACT = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}\n    lever_arm: 0.24 m"
 SAMPLED = "\nsampling: {period: 2 ms, delay: DELAY}\ncontact: losable\n"
@@ -50,26 +50,9 @@ modes:
   - {name: soft, A: [[0, 1], [-0.1, -0.5]]}
 switching: {dwell_time: 2.73 s}
 """
-HARD = """\
-kind: switched-system
-name: hard
-time: continuous
-modes:
-  - {name: a, A: [[-1, -1], [1, -1]]}
-  - {name: b, A: [[-1, "-11.2"], ["5/56", -1]]}
-switching: arbitrary
-"""
+HARD = spec_text("hard")
 # Zelentsovsky 1994: stable for k in [0, K] iff K < 6.98513.
-OSCILLATOR = """\
-kind: switched-system
-name: oscillator
-time: continuous
-parameters:
-  k: {nominal: 3, range: [0, 6.98]}
-modes:
-  - {name: oscillator, A: [[0, 1], [-2 - k, -1]]}
-switching: arbitrary
-"""
+OSCILLATOR = spec_text("oscillator")
 
 
 def blocked(tmp_path: Path, text: str, budget: float) -> Blocked:
@@ -212,7 +195,7 @@ def test_nothing_helps_against_a_spring_that_is_too_stiff(tmp_path):
 
 @pytest.mark.slow
 def test_calmer_gains_of_all_controllers_come_first(tmp_path):
-    text = USELESS.replace("{min: 7 N*m*s/rad, max: 20 N*m*s/rad}", "2 N*m*s/rad")
+    text = spec_text("useless").replace("{min: 7 N*m*s/rad, max: 20 N*m*s/rad}", "2 N*m*s/rad")
     text = text.replace("600 N/m", "{nominal: 600 N/m, range: [300 N/m, 900 N/m]}")
     text = text.replace("0.015 rad", "0.06 rad") + "sampling: {period: 2 ms, delay: [0, 3]}\n"
     gains, *others = blocked(tmp_path, text, 4).proved

@@ -70,20 +70,12 @@ def test_known_optima(tmp_path, goals, changes, Bt, cost):
     assert found.cost == pytest.approx(cost, abs=5e-4)
     assert found.tried <= 10
     assert found.result.certificate.verdict == Verdict.PROVED
-    (goal,) = found.goals
-    assert (goal.price is not None) == ("mass" not in changes or "4" in goals)
 
 
-def test_the_goal_is_proved_and_its_price_is_what_it_costs(tmp_path):
+def test_the_goal_is_proved_of_the_spec_as_it_stands(tmp_path):
     found = optimum(tmp_path, "decay_rate: 2 1/s, delay: 2 ms")
     assert dampings(found) == [2.15, 1.12]
     assert found.free_cost == pytest.approx(FREE, abs=1e-5)
-    goal, delay = found.goals
-    # An age is whole samples: it binds, and has no price for a percent.
-    assert (delay.key, delay.binds, delay.price) == ("delay", True, None)
-    # From 0.977 1/s to 2 1/s the cost rises by 0.0150, ever faster.
-    mean = (found.cost - found.free_cost) / (2 - found.free_rate)
-    assert mean < goal.price < 2 * mean
     # It is proved of the spec as it stands, and this is what is designed for it.
     loaded, certificate = found.result.loaded, found.result.certificate
     assert loaded.spec.controllers["insertion"].Bt.fixed is False
@@ -106,10 +98,6 @@ def test_two_goals_at_once_one_of_them_not_declared(tmp_path):
     assert found.result.loaded.spec.sampling.delay == (0, 1)
     assert found.result.certificate.ages == (0, 2)
     assert found.result.certificate.verdict == Verdict.PROVED
-    assert [(goal.key, goal.binds) for goal in found.goals] == [
-        ("decay_rate", True),
-        ("delay", True),
-    ]
 
 
 @pytest.mark.nightly
@@ -121,8 +109,6 @@ def test_a_rate_and_a_bound_on_the_force_at_once(tmp_path):
     assert bound_on(certificate.system, certificate.statements, "force").level <= 3
     # Each of them alone costs less: 0.2525, and 0.2420.
     assert found.cost > 0.2522
-    assert {goal.key for goal in found.goals if goal.binds} <= {"decay_rate", "peak_torque"}
-    assert any(goal.binds for goal in found.goals)
 
 
 @pytest.mark.nightly
@@ -165,7 +151,6 @@ def test_other_functions_may_prove_the_optimum_of_the_cost(tmp_path, monkeypatch
     found = optimum(tmp_path, "decay_rate: 0.5 1/s")
     assert found.cost == pytest.approx(free, abs=1e-5)
     assert decay_rate(found.result.certificate) >= Fraction(1, 2)
-    assert not any(goal.binds for goal in found.goals)
     # What it does not prove either is not reached.
     with pytest.raises(DesignError, match="were found that one quadratic function"):
         optimum(tmp_path, "decay_rate: 2 1/s")
@@ -191,9 +176,6 @@ def test_the_force_steers_as_well(tmp_path):
     said = "peak_torque: 3 N*m}\ndisturbances: {command: 8 deg/s"
     designed, analysis = designed_of(tmp_path, said)
     found = run_certified_optimum(designed, analysis)
-    (goal,) = found.goals
-    assert goal.key == "peak_torque"
-    assert goal.price > 0
     assert 0.24 < found.cost < 0.243
     bound = bound_on(found.result.certificate.system, found.result.certificate.statements, "force")
     assert bound.level <= 3

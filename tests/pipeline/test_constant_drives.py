@@ -1,55 +1,17 @@
 """Constants of drives and times: sets of corners, and the proof at values that lie between."""
 
-import re
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.errors import AssemblyError, SpecError
+from nrs_design.errors import AssemblyError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import parse_spec, read_spec
 from tests.support import words_of
+from tests.tables import spec_text
 
-TORQUES = """\
-kind: interaction-design
-name: constant-inertia
-torque_interface:
-  inertia: {nominal: 0.2 kg*m^2, range: [0.05 kg*m^2, 0.6 kg*m^2], varies: false}
-  friction: 0.5 N*m*s/rad
-limits: {velocity: 8 deg/s, torque: 3 N*m, bandwidth: 2 Hz}
-environments:
-  tissue: {model: elastic, stiffness: {nominal: 42 N*m/rad, range: [17 N*m/rad, 45 N*m/rad]}}
-controllers:
-  soft: &soft
-    type: torque-impedance
-    environment: tissue
-    stiffness: 30 N*m/rad
-    damping: 3 N*m*s/rad
-  firm:
-    type: torque-impedance
-    environment: tissue
-    stiffness: 60 N*m/rad
-    damping: 5 N*m*s/rad
-switching: arbitrary
-sampling: {period: 1 ms, delay: 0}
-contact: kept
-""".replace(" &soft", "")
-LATE = """\
-kind: interaction-design
-name: late
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: 43 N*m/rad}
-controllers:
-  only: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
-switching: arbitrary
-sampling: {period: 2 ms, delay: 0, latency: {range: [2.4 ms, 3.6 ms], varies: false}}
-contact: kept
-"""
+TORQUES, LATE = spec_text("constant-inertia"), spec_text("constant-latency")
 
 
 def read(tmp_path, text):
@@ -125,26 +87,6 @@ def test_a_constant_latency_is_what_is_left_of_the_period(tmp_path):
     assert not other.switching.fixed_ends
     texts = " ".join(words_of(system))
     assert "by a time that is unknown from 0.0024 s to 0.0036 s, but always the same" in texts
-
-
-@pytest.mark.parametrize(
-    ("new", "what"),
-    [
-        ("{range: [1.4 ms, 2.6 ms], varies: false}", "crosses a sample"),
-        ("{range: [2.4 ms, 2.4 ms], varies: false}", "one value is known"),
-        ("{range: [2.4 ms, 3.6 ms], varies: sometimes}", "true or false"),
-        ("{range: [3.6 ms, 2.4 ms], varies: false}", "below its start"),
-        ("{nominal: 2.4 ms, varies: false}", "expected a range"),
-        ("{range: [2.4 ms, 3.6 ms], varies: false}, jitter: 0.1 ms", "jitter"),
-    ],
-)
-def test_a_constant_time_that_contradicts_is_refused(new, what):
-    text = re.sub(r"latency: \{.*?\}", f"latency: {new}", LATE)
-    with pytest.raises(SpecError) as caught:
-        parse_spec(text)
-    faults = caught.value.faults or (caught.value,)
-    assert what in " ".join(f"{fault.message} {fault.remedy}" for fault in faults)
-    assert all(fault.remedy for fault in faults)
 
 
 def test_a_range_that_varies_may_say_so():

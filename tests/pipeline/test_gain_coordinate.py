@@ -6,11 +6,7 @@ from math import log
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.pipeline.gain_coordinate import (
-    GainCoordinate,
-    bounded_gain,
-    freed_gains,
-)
+from nrs_design.pipeline.gain_coordinate import GainCoordinate, bounded_gain, freed_gains
 from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.support import ROOT

@@ -7,12 +7,10 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError, DesignError
-from nrs_design.facts.certification import margins_facts
 from nrs_design.pipeline import margins
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.margins import run_proof_margins
 from nrs_design.pipeline.runs import run_certification, run_design
-from nrs_design.reporting.remedies import margin_lines
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import refuted_at_once
 from nrs_design.spec import read_spec
@@ -104,36 +102,3 @@ def test_a_delay_that_makes_no_loop_ends_the_search_and_says_why(tmp_path, monke
     assert (loop.delay.proved, loop.delay.refuted) == (1, None)
     assert "what is beyond makes no system (the loop is too large)" in loop.delay.end
     assert "what is beyond makes no system (the loop is too large)" in loop.period.end
-
-
-MISSES = """\
-kind: switched-system
-name: late
-time: discrete
-modes:
-  - {name: hit, A: [["1/2"]]}
-  - {name: miss, A: [["5/2"]]}
-switching: arbitrary
-misses: {mode: miss, RULE}
-"""
-
-
-@pytest.mark.parametrize(
-    ("rule", "proved", "refuted", "said"),
-    [
-        # 0.5^(7 - m) 2.5^m is below one for up to 3 misses.
-        ("at_most: 2, of: 7", 3, 4, "proved up to 3 of any 7 steps in a row, refuted from 4 on"),
-        ("at_most: 6, of: 7", 3, 4, "proved up to 3 of any 7 steps in a row, refuted from 4 on"),
-        # One miss and one hit grow by 1.25.
-        ("consecutive: 2", None, 1, "none is proved, refuted from 1 on"),
-    ],
-)
-def test_how_many_deadlines_may_be_missed(tmp_path, rule, proved, refuted, said):
-    path = tmp_path / "late.nrs.yaml"
-    path.write_text(MISSES.replace("RULE", rule), encoding="utf-8")
-    result = run_certification(read_spec(path))
-    found = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False)
-    assert (found.misses.proved, found.misses.refuted) == (proved, refuted)
-    (line,) = margin_lines(found, result.loaded.spec)
-    assert line == f"most missed deadlines: {said}"
-    assert margins_facts(found)["most_misses"]["refuted"] == refuted

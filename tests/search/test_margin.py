@@ -24,7 +24,6 @@ from nrs_design.search.margin import (
     find_longest_delay,
     find_longest_period,
     find_margin,
-    find_most_misses,
     find_shortest_dwell,
 )
 from nrs_design.search.method import Method
@@ -202,18 +201,6 @@ def test_where_no_period_is_refuted_the_end_is_named():
     assert found.end == "none of up to 1 s is refuted: what is beyond makes no system (too large)"
     nothing = period_of(1, lambda period: N)
     assert nothing == Bracket(None, None, "none of up to 16 s is refuted: the search ends there")
-
-
-@pytest.mark.parametrize("declared", range(1, 12))
-@pytest.mark.parametrize(("proved", "refuted"), [(0, 1), (0, 4), (3, 4), (3, 7), (9, 12), (5, 99)])
-def test_the_most_misses(declared, proved, refuted):
-    rule = between(proved, refuted)
-    own, known = Rule(rule), certified(rule(declared))
-    found = find_most_misses(declared, 12, own.assemble, own.certify, known)
-    assert found.proved == (proved or None)
-    assert found.refuted == (refuted if refuted <= 12 else None)
-    assert len(set(own.seen)) == len(own.seen) <= 10
-    assert 0 not in own.seen
 
 
 def dwell_of(system, rule, known=None):

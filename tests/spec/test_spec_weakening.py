@@ -80,12 +80,9 @@ EITHER = (
     "Elastic KelvinVoigt Hand Maxwell HuntCrossley KelvinBoltzmann Monitoring "
     "TaskLimits Sinusoid Surface CommandCondition TorqueCondition ThresholdControl SignControl"
 )
-BORNE = (
-    "Disturbances Sensor Sampling Goals Transparency Accuracy TorqueSignal CommandSignal Errors "
-    "ScenarioLimits"
-)
+BORNE = "Disturbances Sensor Sampling Goals TorqueSignal CommandSignal Errors ScenarioLimits"
 # Parts, which are compared by their own fields, and values that no two guesses fit.
-PARTS = {"filter", "misses", "transparency", "accuracy", "model"}
+PARTS = {"filter", "misses", "model"}
 PARTS |= {"center_of_mass", "surface", "side", "parameters"}
 WORDS = {*IdentifiedRangesSpec.model_fields, "linearized_about", "admittance"}
 

@@ -36,19 +36,17 @@ from nrs_design.spec.controllers import IntegralControllerSpec
 class ForceAnalysis(AbstractControllerAnalysis):
     """One force controller."""
 
-    stiffness: float  # Of nominal contact, in N m/rad
+    stiffness: float  # Stiffness of nominal contact, in N m/rad
     loop: ForceLoop  # Closed in nominal contact
-    # How the limit of the spec on the force is reached: at the largest velocity.
-    approach: Approach
-    # What is left of the force error then, over the force; of the law as declared.
-    steady_error: float
+    approach: Approach  # Approach to the force limit of the spec, at the largest velocity
+    steady_error: float  # Lasting force error over the force, of the declared law
     peak: float | None  # Largest force then, in N m; None without offset
-    # What Kp times the stiffness multiplies in the open loop: G, or that with an integral.
+    # Factor of Kp times the stiffness in the open loop: G, or ``(s + Ki/Kp)/s G``.
     forward: TransferFunction
 
 
 def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
-    """Return the Kp that the spec gives, or the one with the damping ratio that it wants."""
+    """Return the given Kp, or the Kp with the damping ratio of the spec."""
     if given.proportional_gain is not None:
         return to_float32(given.proportional_gain.exact)
     stiffness = task.stiffness(given)
@@ -97,15 +95,7 @@ def analyze_approach(
     if isinstance(task.axis, ContinuousAxis) and task.plant.actuator_ranges.fixed:
         loops = ranged_loops(task.axis, controller.law, task.contacts(given), {})
     return ForceAnalysis(
-        controller.name,
-        achieved,
-        stiffness,
-        loop,
-        approach,
-        left,
-        peak,
-        forward,
-        loops=loops,
+        controller.name, achieved, stiffness, loop, approach, left, peak, forward, loops=loops
     )
 
 

@@ -15,11 +15,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
 from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
-from nrs_design.design.impedance_optimum import (
-    ImpedanceLoop,
-    ImpedanceProblem,
-    impedance_cost,
-)
+from nrs_design.design.impedance_optimum import ImpedanceLoop, ImpedanceProblem, impedance_cost
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
     Choice,
@@ -28,15 +24,9 @@ from nrs_design.design.laws.law import (
     goals_of,
     naming,
 )
-from nrs_design.design.measures import (
-    CREEP_MEASURES,
-    HAND_MEASURES,
-    IMPEDANCE_MEASURES,
-    Measure,
-)
+from nrs_design.design.measures import CREEP_MEASURES, HAND_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
-from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.interval import Interval
@@ -56,7 +46,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Mt, Bt: as shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
     Mt: float
     Bt: float
-    cost: float  # Of the shipped gains
+    cost: float  # Cost of the shipped gains
     requirement: Requirement
     # Upper end of the stiffness of the environment that it was designed for, in N m/rad.
     highest_stiffness: float
@@ -68,12 +58,10 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     # Where the displayed admittance is passive, exactly, over the ranges of the motor; None for a
     # sampled law.
     band: PassiveBand | None = None
-    # Of everything that it touches, in m; None if there is none, or not the same for all.
-    lever_arm: float | None = None
-    responses: tuple[JudgedResponse, ...] = ()  # Goals for its frequency responses, with proofs
+    lever_arm: float | None = None  # Common lever arm of all contacts, in m; None without one
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
-        """Return worst values with what is proved of them over all values of the ranges."""
+        """Return worst values with their proofs over the ranges."""
         home, loop = self.given.environment, self.requirement
         return with_proofs(achieved, self.loops, home, loop.desired, loop.bandwidth)
 
@@ -96,7 +84,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         return next(found for found in self.judged if found.measure is measure)
 
     def doubts(self) -> Iterator[Doubt]:
-        """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
+        """Yield doubts about the gains, and the gains on a bound."""
         yield from super().doubts()
         if self.requirement.axis is None:
             text = f"{self.name}: margins and k limit are {NOT_COMPUTED}"
@@ -108,7 +96,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
 def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     """Return the gains that the spec gives, or the best that its bounds and goals allow."""
     if given.Mt.fixed and given.Bt.fixed:
-        # Nothing to choose; whether these gains are stable is for the certificate to say.
+        # The certificate says whether these gains are stable.
         Mt, Bt = (to_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
         return Admittance(Mt, Bt, _spring(given)), None
     requirement = requirement_of(task, given)
@@ -140,8 +128,10 @@ def analyze(
     ends = given.Mt.min.si, given.Bt.min.si
     own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)))
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
-    asked, of_responses = dict(requirement.goals), response_goals(task.spec.goals, given.goals)
-    measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
+    measures = (
+        *_measures(task),
+        *(item for item in HAND_MEASURES if item in dict(requirement.goals)),
+    )
     return ImpedanceAnalysis(
         name=controller.name,
         achieved=requirement.achieved(measures, Mt, Bt),
@@ -160,9 +150,6 @@ def analyze(
         stiff=tuple(doubt_stiffness(controller.name, requirement, contacts, Mt, Bt)),
         band=None if axis is None else passive_band(axis, law, moving),
         lever_arm=_lever_arm(task, given),
-        responses=tuple(
-            judged_responses(task.spec, of_responses, task.axis, law, moving, task.plant)
-        ),
         # None with more than four ranges at once.
         loops=() if axis is None else ranged_loops(axis, law, contacts, moving),
     )
@@ -238,7 +225,7 @@ def impedance_problem(
 
 
 def with_spring(given: ImpedanceControllerSpec, Kt: Fraction | None) -> ImpedanceControllerSpec:
-    """Return what a spec says of a controller, with a spring in SI that was chosen, or none."""
+    """Return the spec of a controller with a chosen spring in SI, if it has a spring."""
     if given.Kt is None or Kt is None:
         return given
     spring = Quantity(f"{exact_decimal(Kt)} {unit('N*m/rad')}", Kt, unit("N*m/rad"))
@@ -269,13 +256,13 @@ def requirement_of(task: Task, given: ImpedanceControllerSpec) -> Requirement:
 
 
 def _home_names(given: ImpedanceControllerSpec) -> tuple[str, ...]:
-    """Return the environment that the gains are designed for, and what it is part of."""
+    """Return the environment of the design, and its combinations with others."""
     at_once = (c for c in given.contacts if given.environment in names_in(c))
     return given.environment, *contact_names(tuple(at_once))
 
 
 def _measures(task: Task) -> tuple[Measure, ...]:
-    """Return what an impedance controller is measured by: creep where its cause is known."""
+    """Return the measures of an impedance controller, with creep if its cause is known."""
     return (*IMPEDANCE_MEASURES, *(CREEP_MEASURES if task.sensor.errors else ()))
 
 

@@ -1,4 +1,4 @@
-"""What choosing the gains of any law needs, and what the result is held against."""
+"""Choice and analysis of gains, for any law."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from nrs_design.spec.quantity import exact_number
 
 @dataclass(frozen=True)
 class Task:
-    """What the gains of every controller are chosen for."""
+    """Spec, plant and motion controller of a design."""
 
     spec: InteractionDesignSpec  # Requirements and bounds
-    plant: Plant  # That it describes
+    plant: Plant  # Plant of the spec
     pd: ProportionalDerivative  # The motion controller
 
     @property
@@ -56,12 +56,10 @@ class Task:
         return axis_of(self.spec, self.plant, self.pd, self.sensor)
 
     def corners(
-        self,
-        given: ControllerSpec,
-        spring: Fraction = Fraction(0),
+        self, given: ControllerSpec, spring: Fraction = Fraction(0)
     ) -> tuple[ContactCorner, ...]:
         """Return where a controller is measured."""
-        assert given.environment is not None  # Of a controller with contact.
+        assert given.environment is not None  # A controller with contact has one.
         places = (Place(self.plant.actuator),) if self.axis is None else self.axis.places
         return corners_of(self.contacts(given), given.environment, places, spring)
 
@@ -71,19 +69,19 @@ class Task:
         return build_sensor(self.spec.sensor)
 
     def contacts(self, given: ControllerSpec) -> tuple[Environment, ...]:
-        """Return all contacts of a controller, and what its gains are designed for beside them."""
-        assert given.environment is not None  # Of a controller with contact.
+        """Return the contacts of a controller, with the environment of its design."""
+        assert given.environment is not None  # A controller with contact has one.
         names = dict.fromkeys((*contact_names(given.contacts), given.environment))
         return tuple(map(self.plant.environment, names))
 
     def stiffness(self, given: ControllerSpec) -> float:
-        """Return that of nominal contact with what a controller is designed for, in N m/rad."""
-        assert given.environment is not None  # Of a controller with contact.
+        """Return the stiffness of nominal contact in the environment of the design, in N m/rad."""
+        assert given.environment is not None  # A controller with contact has one.
         return self.plant.environment(given.environment).nominal.stiffness
 
     def followed(self, given: ControllerSpec) -> TransferFunction:
         """Return G, and how a filter and the relaxation of nominal contact let the force follow."""
-        assert given.environment is not None  # Of a controller with contact.
+        assert given.environment is not None  # A controller with contact has one.
         numerator, denominator = self.motion.numerator, self.motion.denominator
         rates = self.plant.environment(given.environment).nominal.memory_rates
         if rates is not None:
@@ -103,34 +101,34 @@ class Task:
 
 @dataclass(frozen=True)
 class AbstractControllerAnalysis(ABC):
-    """What the gains of one controller achieve."""
+    """Worst values of one controller."""
 
-    name: str  # Of the controller
+    name: str  # Name of the controller
     achieved: tuple[Achieved, ...]  # The worst values over the contacts, beside the goals
     # Over whose ranges margins can be proved; empty where they cannot.
     loops: tuple[RangedLoop, ...] = field(default=(), kw_only=True)
 
     @property
     def unusual(self) -> tuple[Measure, ...]:
-        """What is beyond its usual limit, and no goal speaks of it."""
+        """Measures beyond their usual limit that no goal limits."""
         return tuple(
             item.measure for item in self.achieved if is_unusual(item.measure, self.achieved)
         )
 
     @cached_property
     def judged(self) -> tuple[Achieved, ...]:
-        """The same, with what is proved of them over all values of the ranges."""
+        """Worst values with their proofs over the ranges."""
         asked = {found.measure: found for found in self.judged_goals}
         others = iter(self.prove([found for found in self.achieved if found.goal is None]))
         return tuple(asked.get(found.measure) or next(others) for found in self.achieved)
 
     @cached_property
     def judged_goals(self) -> tuple[Achieved, ...]:
-        """Those that have a goal, which a gate asks for: a proof of any other takes as long."""
+        """Worst values with a goal, and their proofs; a gate needs no others."""
         return self.prove([found for found in self.achieved if found.goal is not None])
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
-        """Return worst values with what is proved of them over all values of the ranges."""
+        """Return worst values with their proofs over the ranges."""
         return with_proofs(achieved, self.loops)
 
     @property
@@ -139,25 +137,22 @@ class AbstractControllerAnalysis(ABC):
         return tuple(found.measure.title for found in self.judged if found.bound is not None)
 
     def doubts(self) -> Iterator[Doubt]:
-        """Yield what is doubtful about the gains, and no goal speaks of it."""
+        """Yield doubts about the gains that no goal settles."""
         yield from doubt_values(self.name, self.achieved, provable=bool(self.loops))
 
 
-# The law with the gains that ship, and what they were rounded from, if a search found them.
+# A law with its gains, and the optimum before rounding, if there was a search.
 Choice = tuple[CompliantLaw, ImpedanceOptimum | None]
 
 
 @dataclass(frozen=True)
 class LawDesign:
-    """How the gains of one law are chosen and analyzed."""
+    """Functions that choose and analyze the gains of one law."""
 
     choose: Callable[[Task, Any], Choice]  # Gives the law for a task and the spec of a controller
-    # Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
-    # controller (`given`), and the controller with the gains that ship; None where nothing is
-    # measured.
+    # Takes task, spec of the controller and controller with its gains; None without measures.
     analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
-    # Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
-    # where that is not known.
+    # Takes the same, and yields too stiff contacts with advice; None where that is not known.
     too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
 
 
@@ -178,8 +173,7 @@ def choose_given(task: Task, given: ControllerSpec) -> Choice:
     return law.of(gains), None
 
 
-# Of a law whose gains are given, and of which nothing is measured.
-GIVEN = LawDesign(choose_given)
+GIVEN = LawDesign(choose_given)  # For laws with given gains and without measures
 
 
 @contextmanager

@@ -19,10 +19,8 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.spec.controllers import IntegralControllerSpec
 
-# Time constants until 2 % are left, as in thesis 4.14.
-_SETTLED = 4.0
-# How far a pole may be from where it is wanted, by rounding.
-_NEAR = 1e-6
+_SETTLED = 4.0  # Time constants until 2 % are left, as in thesis 4.14
+_NEAR = 1e-6  # Largest relative rounding error of a pole
 
 
 def with_integral(motion: TransferFunction, zero: float) -> TransferFunction:
@@ -76,7 +74,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     """Close the loop in nominal contact, which must be stable, and measure it in all contacts."""
     Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
     limits = task.spec.limits
-    # The position command waits, and the integral is what it was: the command does not step.
+    # Position command and integral keep their values: the command does not step.
     approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)
     forward = with_integral(task.followed(given), Ki / Kp)
     return analyze_approach(task, given, controller, forward, approach, MARGINS)

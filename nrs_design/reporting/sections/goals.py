@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
-from nrs_design.design.measures import MEANING, RESPONSE_MEANING, GoalStanding
+from nrs_design.design.measures import MEANING, GoalStanding
 from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, State, Table
 from nrs_design.reporting.sections.places import contact_at, linked, with_line
 from nrs_design.reporting.sections.titles import GOALS
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec, Spec
 
 _CERTIFIED = ("Goal", "Wanted", "What the certificate shows", "Result")
-_RESPONSES = ("Controller", "Wanted", "What is shown", "Result")
 _PROOFS = (
     "These goals are for all controllers together, and what is proved decides them, in exact "
     "arithmetic, as in nrs-design gate (NRS108). One that is not proved is not refuted: more may "
@@ -39,7 +38,7 @@ def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | 
 
     None where nothing is measured and no goal asks for a proof.
     """
-    blocks = [*_measured(result, analysis), *_responses(result, analysis), *_certified(result)]
+    blocks = [*_measured(result, analysis), *_certified(result)]
     return Section(GOALS, tuple(blocks)) if blocks else None
 
 
@@ -50,10 +49,7 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     goals = [found for item in measured for found in item.judged_goals]
     missed = sum(found.standing is GoalStanding.MISSED for found in goals)
     unjudged = sum(found.standing is GoalStanding.NOT_JUDGED for found in goals)
-    responses = [f for item in (analysis.impedance if analysis else ()) for f in item.responses]
-    refuted = [found.key for found in responses if found.refuted]
     open_ = [goal.key for goal in proofs if not goal.met]
-    open_ += [found.key for found in responses if not (found.proved or found.refuted)]
     uncomputed = analysis is None and _are_measured(result.loaded.spec)
     said = []
     if uncomputed:
@@ -65,14 +61,13 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     if unjudged and not uncomputed:
         said.append(f"{unjudged} of {len(goals)} not judged between the corners of ranges")
     shown = [goal.key for goal in proofs if goal.met]
-    shown += [found.key for found in responses if found.proved]
-    for how, keys in (("REFUTED", refuted), ("NOT proved", open_), ("proved", shown)):
+    for how, keys in (("NOT proved", open_), ("proved", shown)):
         if keys:
             said.append(f"{how}: {', '.join(dict.fromkeys(keys))}")
     if not said:
         return State.UNKNOWN, "no goals set"
     state = State.DOUBTFUL if open_ or uncomputed or unjudged else State.GOOD
-    return State.BAD if missed or refuted else state, "; ".join(filter(None, said))
+    return State.BAD if missed else state, "; ".join(filter(None, said))
 
 
 def _are_measured(spec: Spec) -> bool:
@@ -103,23 +98,6 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
     doubts = tuple(with_line(designed.loaded, str(doubt), *doubt.at) for doubt in analysis.warnings)
     if doubts:
         yield Bullets("Warnings", doubts)
-
-
-def _responses(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block]:
-    """Yield the goals for frequency responses, and what is proved of them."""
-    rows = tuple(
-        (
-            item.name,
-            linked(result.loaded, found.wanted, *_place(result.loaded, item.name, found.key)),
-            found.said,
-            found.ends if found.proved else found.ends.upper(),
-        )
-        for item in (() if analysis is None else analysis.impedance)
-        for found in item.responses
-    )
-    if rows:
-        yield Paragraph(RESPONSE_MEANING)
-        yield Table("Transparency and accuracy", _RESPONSES, rows)
 
 
 def _place(loaded: LoadedSpec, controller: str, goal: str) -> tuple[str, ...]:

@@ -1,11 +1,12 @@
-"""Points of a sweep, in one order, exactly as a spec writes them."""
+"""The points of a sweep, as a spec writes them, and their answers as a table."""
 
 from itertools import product
 
 import pytest
 
-from nrs_design.errors import SpecError
-from nrs_design.sweeps.grid import parse_values, read_grid
+from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.pipeline.sweep_grid import parse_values, read_grid
+from nrs_design.pipeline.sweep_table import cell_text, chosen, facts_in, flat, telling
 from tests.support import COMMUTING, SOFT_TISSUE
 from tests.tables import rows
 
@@ -66,3 +67,40 @@ REFUSED = (
 def test_what_has_no_values_is_refused(text):
     with pytest.raises(SpecError):
         parse_values(text)
+
+
+def test_items_are_called_by_their_names():
+    document = {
+        "spec_sha256": "ab",
+        "controllers": [{"name": "in", "Mt": 1.5}, {"name": "out", "Mt": None}],
+        "modes": ["a", "b"],
+        "empty": [],
+    }
+    assert dict(flat(document)) == {
+        "controllers.in.Mt": 1.5,
+        "controllers.out.Mt": None,
+        "modes.0": "a",
+        "modes.1": "b",
+    }
+
+
+def test_a_fact_tells_if_it_differs_and_is_short():
+    rows = [
+        {"same": 1, "rate": 0.1, "said": "a" * 30, "rate_exact": "1/10"},
+        {"same": 1, "rate": 0.2, "said": "b" * 30, "rate_exact": "1/5", "late": 1},
+        {"same": 1, "rate": 0.2, "late": 1},
+    ]
+    assert facts_in(rows) == ["same", "rate", "said", "rate_exact", "late"]
+    assert telling(rows) == telling([*rows, {}]) == ["rate", "late"]
+
+
+def test_facts_are_chosen_by_how_they_end():
+    rows = [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
+    assert chosen(rows, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
+    with pytest.raises(NrsDesignError, match="no answer has a fact 'Bx'"):
+        chosen(rows, ["Bx"])
+
+
+def test_cells():
+    values = {None: "-", True: "yes", False: "no", 1 / 3: "0.333333", 7: "7", "a": "a"}
+    assert {value: cell_text(value) for value in values} == values

@@ -25,7 +25,7 @@ from nrs_design.spec.load import read_axes
 from nrs_design.spec.task_space import file_of
 
 MAX_FIELDS = 3
-# Beyond that nobody reads the result.
+# A larger result has no reader.
 MAX_POINTS = 20_000
 EXAMPLE = "write a list such as '1,2,5 N*m/rad', or a range such as '1..250/16 N*m/rad'"
 _END = r"[+-]?(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -36,13 +36,13 @@ _RANGE = re.compile(rf"({_END})\.\.({_END})/([0-9]{{1,9}})(?: +(\S.*))?")
 class Field:
     """A field of the spec, and the values that it takes."""
 
-    path: str  # As it was written, such as ``environments.soft.stiffness``
+    path: str  # Text of the path, such as ``environments.soft.stiffness``
     at: Keys  # Its place in the document
     values: Sequence[str]  # As a spec writes them
 
     @property
     def unit(self) -> str:
-        """The unit of all values; empty if they have none, or several."""
+        """Common unit of all values, or empty."""
         parts = [text.partition(" ") for text in self.values]
         units = {unit if is_number(number) else "" for number, _, unit in parts}
         return units.pop() if len(units) == 1 else ""
@@ -60,12 +60,12 @@ class Grid:
         return list(product(*(field.values for field in self.fields)))
 
     def changes(self, point: tuple[str, ...]) -> tuple[Edit, ...]:
-        """Return what the spec of a point says in the place of what its file says."""
+        """Return the edits of the spec for a point."""
         return tuple((field.at, text) for field, text in zip(self.fields, point, strict=True))
 
 
 def read_grid(spec: Path, said: Sequence[str]) -> Grid:
-    """Read what ``--set`` says, and refuse what makes no sweep of this spec."""
+    """Read the texts of ``--set``, and refuse them if they do not fit the spec."""
     if not 1 <= len(said) <= MAX_FIELDS:
         raise SpecError(
             f"a sweep has one to {MAX_FIELDS} fields, not {len(said)}",
@@ -98,7 +98,7 @@ def _field(said: str, known: dict[str, Keys], file: Path) -> Field:
     if not equals:
         raise SpecError(f"{quoted(said)} sets nothing", remedy=f"write PATH=VALUES; {EXAMPLE}")
     if path not in known:
-        # What is mistyped is most often the last word of a path.
+        # Most typing errors are in the last word.
         above = f"{path.rpartition('.')[0]}."
         beside = [name for name in known if name.startswith(above)] or [*known]
         called = [name for name in known if name.endswith(f".{path}")]

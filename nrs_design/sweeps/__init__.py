@@ -1,1 +1,0 @@
-"""Sweeps: one command for many values of a spec, point by point, kept and taken up again."""

@@ -9,14 +9,20 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.api.proof_facts import (
+    blocked_facts,
+    certification_facts,
+    margins_facts,
+    radius_facts,
+)
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.errors import OutputError, SpecError
-from nrs_design.facts.certification import certification_facts
 from nrs_design.output import PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, write_certificate
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.scenarios import judged_if_stable
+from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
@@ -25,8 +31,53 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.radius import RadiusBounds
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
+
+
+@dataclass(frozen=True, slots=True)
+class Further:
+    """Margins, growth and remedies, which a command looks for once it has a verdict."""
+
+    margins: ProofMargins
+    growth: RadiusBounds | None
+    blocked: Blocked | None
+    relief: tuple[str, ...]
+    steps: tuple[str, ...]
+    history: Sequence[tuple[int, float]] = ()  # Of the gradient iteration: updates and value
+
+    def facts(self, spec: Path) -> dict[str, Any]:
+        """Return what ``--json`` prints of it."""
+        return (
+            radius_facts(self.growth)
+            | margins_facts(self.margins)
+            | ({"gradient_history": self.history} if self.history else {})
+            | {"relief": list(self.relief), "next_steps": list(self.steps)}
+            | ({} if self.blocked is None else blocked_facts(self.blocked, spec))
+        )
+
+    def lines(self, loaded: LoadedSpec, *, verbose: bool) -> Iterator[str]:
+        """Yield it in words; with all details, or the most promising remedy alone."""
+        if self.growth is not None:
+            yield f"  {_growth_line(self.growth, verbose=verbose)}"
+        # What would be proved instead is a better remedy than the others.
+        is_helped = self.blocked is not None and bool(self.blocked.proved)
+        if verbose or not is_helped:
+            yield from (f"  {line}" for line in self.relief)
+        margins = self.margins
+        if any((margins.loop, margins.box, margins.dwell, margins.misses)):
+            from nrs_design.reporting.remedies import margin_lines
+
+            yield from (f"  {line}" for line in margin_lines(margins, loaded.spec))
+        if self.blocked is not None:
+            from nrs_design.pipeline.blocked import blocked_lines
+
+            yield from (f"  {line}" for line in blocked_lines(self.blocked, loaded.path))
+        some = None if verbose else 0 if is_helped or self.relief else 1
+        yield from (f"next: {line}" for line in self.steps[:some])
 
 
 @dataclass(frozen=True, repr=False)
@@ -37,9 +88,15 @@ class Decision(AbstractResult):
     ----------
     result : nrs_design.pipeline.certification.Result
         The spec with its design, its exact modes, every attempt and the certificate.
+    file : pathlib.Path, optional
+        Where the certificate was written.
+    further : Further, optional
+        What was looked for beside the verdict.
     """
 
     result: Result
+    file: Path | None = None
+    further: Further | None = None
 
     @property
     def verdict(self) -> str:
@@ -127,7 +184,30 @@ class Decision(AbstractResult):
         return getattr(self.result.loaded.spec, "axis", None)
 
     def _facts(self) -> dict[str, Any]:
-        return certification_facts(self.result, None)
+        facts = certification_facts(self.result, self.file)
+        path = self.result.loaded.path
+        return facts if self.further is None else facts | self.further.facts(path)
+
+    def lines(self, *, verbose: bool = False) -> Iterator[str]:
+        """Yield verdict, claims and goals in words; verbose: all of the claims and attempts."""
+        from nrs_design.certificates.goals import certified_goals
+
+        found, result = self.result.certification, self.result
+        open_ = "" if found.evidence is not None else ": no proof, and no signal that grows"
+        if self.refuted_in is not None:
+            open_ = f" (refuted {self.refuted_in}; open where contact may be lost)"
+        yield f"{result.loaded.spec.name}: {self.verdict.upper()}{open_}"
+        for statement, short in result.briefs:
+            yield f"  {statement.claim(found.system) if verbose else short}"
+        for attempt in self.attempts:
+            # A bound that was wanted and not found must be visible.
+            is_wanted = attempt.step.startswith(("bound on ", "decay under"))
+            if verbose or (is_wanted and attempt.outcome != "found"):
+                # Steps that were skipped took no time.
+                took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
+                yield f"  {attempt.step}: {attempt.outcome}{took if attempt.seconds else ''}"
+        for goal in certified_goals(result.loaded.spec, result.certificate):
+            yield f"  {goal.line}"
 
     def _drawings(self) -> Figures:
         # The run beside its bound says most; those of the design take longer.
@@ -219,6 +299,22 @@ class Decision(AbstractResult):
         items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
         granted = f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
         return super()._repr_html_() + granted
+
+
+def _growth_line(radius: RadiusBounds, *, verbose: bool) -> str:
+    """Say between which numbers the largest growth per step is; verbose, how each is shown."""
+    low, high = "at least (no word was found)", "at most (no bound was found)"
+    if radius.lower is not None and radius.word is not None:
+        signal = ", ".join(
+            name + (f" {count} times" if count > 1 else "") for name, count in radius.word
+        )
+        shown = f", by {signal}, and again" if verbose else ""
+        low = f"at least {rounded_down(radius.lower)}{shown}"
+    if radius.upper is not None:
+        high = f"at most {rounded_up(radius.upper)}{f' ({radius.method})' if verbose else ''}"
+    if radius.gap is not None:
+        high += f"; {rounded_up(100 * radius.gap)} % apart"
+    return f"growth per step, rho: {low}; {high}"
 
 
 def _holds(path: Path, loaded: LoadedSpec) -> bool:

@@ -61,7 +61,7 @@ def compare_methods(
 def _summary(
     loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]
 ) -> dict[str, Any]:
-    from nrs_design.facts.certification import rate_facts
+    from nrs_design.api.proof_facts import rate_facts
 
     return {
         **loaded.facts,

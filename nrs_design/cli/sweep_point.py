@@ -84,8 +84,8 @@ def _key(job: Job, axes: Sequence[LoadedSpec]) -> str:
 
 def _holds(job: Job, kept: PointAnswer, place: Path, axes: Sequence[LoadedSpec]) -> bool:
     """Tell whether answer and exit code say no more than a certificate shows, checked again."""
+    from nrs_design.api.proof_facts import shown_facts
     from nrs_design.certificates.verify import verify
-    from nrs_design.facts.certification import shown_facts
 
     shown: dict[str, Any] = {}
     if kept.certificate and len(axes) == 1:

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.api.proof_facts import margins_facts
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError, DesignError
-from nrs_design.facts.certification import margins_facts
 from nrs_design.pipeline import margins
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.margins import run_proof_margins

@@ -15,10 +15,9 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run
+from nrs_design.reporting.figures.simulated import Panel, draw_panels, stays_of
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.run import common_lever_arm
-from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.worst_case import DEFLECTION, WorstRun, output_values, pushes_only
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ UNDECLARED = (
     "with `disturbances` a bound can be certified."
 )
 ABOVE = " (above)"
-# Which effects the adversary does not use.
+# Effects that the adversary does not use.
 LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
 _TITLE = "Worst case found"
@@ -127,17 +126,11 @@ def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> F
     names = [channel.name for channel in case.system.channels]
     if _COMMAND in names:
         command = current().fine * run.disturbances[:, names.index(_COMMAND)]
-        held = np.append(command, command[-1:])[:, None]
-        panels.append(BoundedSignal(labelled("Command [deg/s]"), held, None, None))
-    labels = [_controller(name) for name in _modes(case)]
-    who = list(dict.fromkeys(labels))
-    mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)
-    return draw_bounded_run(SwitchedRun(run.time, run.states, mode), panels, who)
-
-
-def _modes(case: WorstCase) -> tuple[str, ...]:
+        panels.append(Panel(labelled("Command [deg/s]"), {"": np.append(command, command[-1:])}))
     free = () if case.system.contact is None else case.system.contact.free
-    return tuple(mode.name for mode in (*case.system.modes, *free))
+    modes = [_controller(mode.name) for mode in (*case.system.modes, *free)]
+    active = [modes[mode] for mode in run.mode.tolist()]
+    return draw_panels(run.time, panels, [*stays_of(run.time, active)])
 
 
 def _controller(mode: str) -> str:
@@ -146,15 +139,14 @@ def _controller(mode: str) -> str:
     return f"{parts[0]}, no contact" if "free" in parts[1:] else parts[0]
 
 
-def _panel(
-    case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None
-) -> BoundedSignal:
+def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
     factor, unit = scale_of(output.name, output.unit, lever_arm)
+    values = factor * output_values(case.system, output, run.states)
+    # Of all values over the range of the contact, those that go farthest.
+    farthest = values[:, np.abs(values).max(axis=0).argmax()]
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
-    return BoundedSignal(
-        f"{output.name.capitalize()} [{unit}]",
-        factor * output_values(case.system, output, run.states),
-        None if limit is None else factor * limit,
-        None if bound is None else np.full(len(run.time), factor * bound),
-        one_sided=pushes_only(case.system, output),
-    )
+    both, signs = (1, -1), (1,) if pushes_only(case.system, output) else (1, -1)
+    limits = () if limit is None else tuple(sign * factor * limit for sign in both)
+    bounds = () if bound is None else tuple(sign * factor * bound for sign in signs)
+    label = f"{output.name.capitalize()} [{unit}]"
+    return Panel(label, {output.name: farthest}, limits, bounds, "certified bound")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,7 +70,8 @@ def draw_simulated(
     With a lever arm in m the deflection is in mm, else in deg. A bound on the torque in N m comes
     with whether it is about this run.
     """
-    torque = response["torque"]
+    torque, deg = response["torque"], current().fine
+    scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     signs = (1, -1) if bool((torque < -0.01 * torque_limit).any()) else (1,)
     title, about = "", "certified bound"
     bounds: tuple[float, ...] = ()
@@ -80,8 +82,6 @@ def draw_simulated(
             title = f"{about} {upper(Fraction(level), 4)} {unit('N m')}, beyond this scale"
         else:
             bounds = tuple(sign * level for sign in signs)
-    deg = current().fine
-    scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     fastest = deg * velocity_limit
     speeds = {"of the axis": deg * response["velocity"], "commanded": deg * response["hand"]}
     limits = tuple(sign * torque_limit for sign in signs)
@@ -90,15 +90,16 @@ def draw_simulated(
         Panel(f"Deflection [{length}]", {"deflection": scale * response["depth"]}),
         Panel(labelled("Velocity [deg/s]"), speeds, (fastest, -fastest)),
     )
-    return draw_panels(response.t, panels, [*_stays(response)], title)
+    return draw_panels(response.t, panels, [*stays_of(response.t, response.active)], title)
 
 
-def _stays(response: TimeResponse) -> Iterator[tuple[float, float, str]]:
-    """Yield begin and end of every stay, and the controller."""
-    changes = (np.flatnonzero(np.diff(response.mode)) + 1).tolist()
-    for start, end in zip([0, *changes], [*changes, len(response) - 1], strict=True):
-        name = response.modes[int(response.mode[start])]
-        yield float(response.t[start]), float(response.t[end]), name
+def stays_of(t: NDArray[np.float64], active: Sequence[str]) -> Iterator[tuple[float, float, str]]:
+    """Yield begin and end of every stay, and the name that is active from one time to the next."""
+    begin = 0
+    for name, steps in groupby(active):
+        end = begin + len(list(steps))
+        yield float(t[begin]), float(t[min(end, len(t) - 1)]), name
+        begin = end
 
 
 @styled

@@ -9,23 +9,18 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.comparison import Comparison, Side
-    from nrs_design.reporting import Report
 
 
 @command("diff")
 def diff(
     before: Annotated[Path, typer.Argument(metavar="A", help="Spec, or certificate (.json).")],
     after: Annotated[Path, typer.Argument(metavar="B", help="Spec, or certificate (.json).")],
-    report: ReportTo = None,
-    date: Date = None,
 ) -> Answer:
     """Compare two specs or certificates: what they say, gains, margins, verdicts, assumptions.
 
@@ -38,18 +33,10 @@ def diff(
     """
     from nrs_design.comparison import compare
 
-    outputs = Destinations.checked(None, report, date)
     with progress("comparing") as step:
         found = compare(before, after, step)
     code = exit_codes.unless(found.differences)
-    answer = Answer(lambda: _summary(found), lambda: _print(found), code)
-
-    def page() -> Report:
-        from nrs_design.reporting.comparison import comparison_report
-
-        return comparison_report(found)
-
-    return outputs.deliver(answer, page)
+    return Answer(lambda: _summary(found), lambda: _print(found), code)
 
 
 def _summary(found: Comparison) -> dict[str, Any]:

@@ -9,7 +9,6 @@ import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import chain
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
@@ -42,24 +41,6 @@ class Derived(str):
         return made
 
 
-class Sentence(str):
-    """Text with hyperlinks; sentences among its parts become its own."""
-
-    __slots__ = ("parts",)
-    parts: tuple[str, ...]
-
-    def __new__(cls, *parts: str) -> Self:
-        """Put parts together."""
-        made = super().__new__(cls, "".join(parts))
-        made.parts = tuple(chain.from_iterable(map(parts_of, parts)))
-        return made
-
-
-def parts_of(text: str) -> tuple[str, ...]:
-    """Return the parts of a text; one that is no `Sentence` is its own only part."""
-    return text.parts if isinstance(text, Sentence) else (text,)
-
-
 class State(StrEnum):
     """State of a light; its text says the same."""
 
@@ -89,7 +70,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Running text, such as a `Sentence`."""
+    """Running text."""
 
     text: str
 
@@ -108,7 +89,7 @@ class Table:
 
     title: str  # Caption above the table
     columns: tuple[str, ...]  # Headings, with units
-    # Cells; one that is `Linked` leads to its line of the spec, parts of a `Sentence` likewise.
+    # Cells; one that is `Linked` leads to its line of the spec.
     rows: tuple[tuple[str, ...], ...]
 
 

@@ -20,7 +20,6 @@ from nrs_design.reporting.sections.head import (
     proved_rate,
     remarks_of,
     summary_of,
-    tests_section,
 )
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
@@ -60,7 +59,7 @@ def build_report(
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
         system = certification.system
-        first = (tests_section(result), remedies_section(result, margins, blocked))
+        first = remedies_section(result, margins, blocked)
         others = (
             proof_section(result),
             *(design_sections(designed, analysis) if designed else ()),
@@ -74,7 +73,7 @@ def build_report(
             recheck_section(result),
             spec_section(result.loaded),
         )
-        sections = (*first, *(replace(item, folded=True) for item in others if item is not None))
+        sections = (first, *(replace(item, folded=True) for item in others if item is not None))
         return Report(
             name=spec.name,
             title=spec.title,

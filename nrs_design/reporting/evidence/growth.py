@@ -18,7 +18,8 @@ from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page, offer_of
-from nrs_design.reporting.evidence.runs import Bound, run_figures
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, Bound
+from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.periodic import (
@@ -143,7 +144,7 @@ def _in_a_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     rate = math.log(abs(worst)) if discrete else worst.real
     label = f"{abs(worst):.4g}^t" if discrete else f"exp({worst.real:.4g} t)"
     line = (f"the eigenvalue alone, {label}", np.exp(rate * response.time))
-    yield from _drawn(f"Staying in mode {name}", _STAYING, response, single, line)
+    yield _drawn(f"Staying in mode {name}", _STAYING, response, single, line)
 
 
 def _average(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
@@ -175,14 +176,15 @@ def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     growth = np.exp(math.log(run.radius) * response.time / run.period)
     line = (f"factor {number(run.radius, 4)} per period", growth)
     caption = f"{caption} {_CARRIED_ON}"
-    yield from _drawn(f"The witness over {periods}", caption, response, system, line)
+    yield _drawn(f"The witness over {periods}", caption, response, system, line)
 
 
 def _drawn(
     title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
-) -> tuple[Illustration, ...]:
+) -> Illustration:
     norms = np.linalg.norm(response.state, axis=1)
-    return run_figures(title, caption, response, norms / norms[0], system, bound=line)
+    figure = draw_run(response, norms / norms[0], line, system, EUCLIDEAN)
+    return Illustration("run", title, caption, figure)
 
 
 def _factor(run: PeriodicRun, steps: int, *, discrete: bool) -> Paragraph:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from sys import float_info
 
@@ -15,7 +15,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.words import allowed
-from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
@@ -68,39 +68,6 @@ EUCLIDEAN = "|x(t)| / |x(0)|\nEuclidean norm [1]"
 _AGAINST = "Switching against the proved bound"
 _BESIDE = "Switching beside the proved rate"
 BOUND = "proved bound, "
-_PLANE = "The same run in the plane of the two states"
-_PATH = (
-    "Path of the state, one color for each active mode. The axes are the two states themselves, no "
-    "projection. A reset is drawn with the step before it. Dashed, if it is proved: level curves "
-    "of V. The path cannot leave that of all modes; the V of one mode decreases while that mode is "
-    "active, unless the mode must be left."
-)
-
-
-def run_figures(
-    title: str,
-    caption: str,
-    response: SwitchedRun,
-    values: Array,
-    system: SwitchedSystem,
-    label: str = EUCLIDEAN,
-    bound: Bound | None = None,
-    *,
-    norms: Mapping[str, Norm] | None = None,
-    deflection: str = "",
-) -> tuple[Illustration, ...]:
-    """Draw a norm along a run, and where the system has two states, the path of the run.
-
-    The path is among level curves of norms by mode, or of one for all by no name; where contact may
-    be lost, or modes take turns, it is left out.
-    """
-    figure = draw_run(response, values, bound, system, label, deflection)
-    run = Illustration("run", title, caption, figure)
-    flat = system.order == 2 and system.is_uniform and not deflection and system.clock is None
-    if not flat:
-        return (run,)
-    path = draw_phase_plane(response, system, norms or {})
-    return run, Illustration("phase-plane", _PLANE, _PATH, path)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +80,10 @@ class Greedy:
     initial: Array  # Shape (n,)
     rate: float | None = None  # Sets the length of the run; None for a fixed length
 
-    def draw(
-        self, text: str, label: str, line: str = "", curves: Mapping[str, Norm] | None = None
-    ) -> Section:
+    def draw(self, text: str, label: str, line: str = "") -> Section:
         """Return the section of the run.
 
-        `line` says which line has the rate, such as ``proved bound, ``; empty for none. Norms of
-        `curves`, by mode, are drawn as level curves.
+        `line` says which line has the rate, such as ``proved bound, ``; empty for none.
         """
         system, rate, norms = all_modes(self.played), self.rate, self.norms
         step, steps = horizon(self.played, rate)
@@ -133,13 +97,10 @@ class Greedy:
             caption += " The run switches freely, which is more than the spec allows."
         if len(self.played.modes) < len(self.system.modes):
             caption += f" Only the {len(self.played.modes)} slowest modes take part."
-        if curves is None:
-            curves = {"": norms} if callable(norms) and line == BOUND else {}
-        shown = (response, values, system, label, bound)
         deflection = "" if self.played.contact is None else system.states[-1]
         title = {"": _UNBOUNDED, BOUND: _AGAINST}.get(line, _BESIDE)
-        figures = run_figures(title, caption, *shown, norms=curves, deflection=deflection)
-        return Section(_SECTION, figures)
+        figure = draw_run(response, values, bound, system, label, deflection)
+        return Section(_SECTION, (Illustration("run", title, caption, figure),))
 
 
 def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
@@ -196,8 +157,7 @@ def ruled_run(
     try:
         step, _ = horizon(played, rate)
         initial = slowest(played, norms, directions, step, _FIRST)
-        curves = {name: quadratic_norm(Q) for name, Q in functions.items()}
-        return Greedy(system, played, norms, initial, rate).draw(text, label, line, curves)
+        return Greedy(system, played, norms, initial, rate).draw(text, label, line)
     except ValueError as error:
         return Section(_SECTION, (Paragraph(f"No run is drawn: {error}."),))
 

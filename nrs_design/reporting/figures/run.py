@@ -1,8 +1,8 @@
-"""Simulated switching: the norm under its bound, the active mode, the phase plane."""
+"""Simulated switching: the norm under its bound, and the active mode."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,22 +10,17 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.formatting import wrapped_label
 from nrs_design.reporting.style import (
     BLUE,
-    CYCLE,
-    DASHES,
     INK,
     MUTED,
     VERMILLION,
     color,
     legend,
-    new_axes,
     new_figure,
     row_labels,
     styled,
 )
-from nrs_design.simulation.norms import Norm, level_curve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -89,42 +84,6 @@ def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
     axes.set_title(f"{name.partition(' [')[0]}; shaded: no contact", loc="left", fontsize=9.5)
 
 
-@styled
-def draw_phase_plane(
-    response: SwitchedRun, system: SwitchedSystem, norms: Mapping[str, Norm]
-) -> Figure:
-    """Draw a run of a system with two states among level curves, all at the value of the start.
-
-    Norms, roots of Lyapunov functions, are by mode, or one for all modes by no name.
-    """
-    figure, axes = new_axes(4.5)
-    # In discrete time only the points are states; the lines lead from one to the next.
-    shape = "o" if system.time is Time.DISCRETE else "None"
-    groups = groups_of(response, _names(system))
-    for row, group in enumerate(groups):
-        dashes = DASHES[row // len(CYCLE) % len(DASHES)]
-        label = f"mode {group.name}" if len(group.modes) == 1 else group.name
-        path = _path_in(response, group.modes)
-        axes.plot(
-            *path.T, marker=shape, linestyle=dashes, color=group.tint, markersize=3, label=label
-        )
-    first, tints = system.modes[int(response.mode[0])].name, {g.name: g.tint for g in groups}
-    shown = {name: norm for name, norm in norms.items() if not name or name in tints}
-    start = float(norms.get(first, norms.get("", np.linalg.norm))(response.state[0]))
-    for name, norm in shown.items():
-        tint, label = tints.get(name, VERMILLION), f"level of V{name and f', {name}'}"
-        axes.plot(*level_curve(norm, start), "--", color=tint, linewidth=1.2, label=label)
-    axes.plot(*response.state[0], "o", color=INK, label="start")
-    axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    x, y = (
-        f"State {wrapped_label(name, 40)}{'' if '[' in name else ' [no unit given]'}"
-        for name in system.states
-    )
-    axes.set(xlabel=x, ylabel=y)
-    legend(figure, axes, 3)
-    return figure
-
-
 @dataclass(frozen=True)
 class Group:
     """Modes that are drawn alike: one, or all that there is no room for."""
@@ -181,14 +140,3 @@ def draw_modes(
     axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_title("Active mode", loc="left", fontsize=9.5)
     axes.grid(visible=False, axis="y")
-
-
-def _path_in(response: SwitchedRun, modes: tuple[int, ...]) -> Array:
-    """Return the states with every step of another mode cut out by NaN."""
-    ends = response.state[1:].copy()
-    begins = response.state[:-1].copy()
-    inside = np.isin(response.mode, modes)
-    ends[~inside], begins[~inside] = np.nan, np.nan
-    gaps = np.full_like(begins, np.nan)
-    gaps[:-1][inside[1:]] = begins[1:][inside[1:]]
-    return np.stack([begins, ends, gaps], axis=1).reshape(-1, 2)

@@ -20,7 +20,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Bullets, Derived, Light, Paragraph, Section, State
+from nrs_design.reporting.document import Derived, Light, State
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.places import linked
@@ -273,7 +273,6 @@ def _open(result: Result) -> Light:
     return Light(ASSUMPTIONS, state, text, ASSUMPTIONS)
 
 
-TESTS = "What to test on the robot"
 # Digits that are read at a glance.
 _DIGITS = 4
 
@@ -282,22 +281,10 @@ def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[st
     """Return labels and values for the head of the page, each on the safe side."""
     return (
         *_worst(analysis),
-        *_modes(result),
         *_force(result),
         *_gains(result),
         *_achieved(analysis),
     )
-
-
-def tests_section(result: Result) -> Section | None:
-    """List the open assumptions, each with its test; None where all are tested or argued."""
-    found = register_of(result.certification.granted, result.loaded.spec)
-    kinds = dict.fromkeys(item.kind for item in found if item.standing == "open")
-    tests = tuple(f"{kind.name}: {kind.test}" for kind in kinds if kind.id)
-    if not tests:
-        return None
-    text = f"{len(tests)} kinds of assumptions are neither tested nor argued. Each has a test:"
-    return Section(TESTS, (Paragraph(text), Bullets("", tests)))
 
 
 def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
@@ -306,14 +293,6 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     if doubts and doubts[0].beyond:
         more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
         yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
-
-
-def _modes(result: Result) -> Iterator[tuple[str, str]]:
-    if isinstance(result.loaded.spec, InteractionDesignSpec):
-        return
-    system = result.certification.system
-    names = shortened([mode.name for mode in system.modes], 4)
-    yield "Modes", Derived(f"{names}; {system.time} time", MODES)
 
 
 def _force(result: Result) -> Iterator[tuple[str, str]]:

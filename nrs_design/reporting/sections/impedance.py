@@ -21,7 +21,7 @@ from nrs_design.design.measures import (
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.sections.places import At, linked
+from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.style import INK, MUTED, color, curve, legend, marker, new_axes, styled
 
 if TYPE_CHECKING:
@@ -93,31 +93,13 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Not passive near [Hz], exact", lambda item: _not_passive(item.band)),
 )
 
-# By the beginning of the label of a row: the key of the spec that it follows from, of the
-# environment or of the controller. What follows from several lines leads to the controller.
-_OF_ENVIRONMENT = {"Nominal stiffness": "stiffness", "Nominal damping": "damping"}
-_OF_CONTROLLER = ("Mt", "Bt", "Kt")
-
-
-def _place(label: str, item: ImpedanceAnalysis) -> tuple[str, ...]:
-    """Return where a spec says what a row of the table shows, or what it follows from."""
-    name, _, _ = label.partition(" [")
-    if name in _OF_ENVIRONMENT:
-        return ("environments", item.given.environment, _OF_ENVIRONMENT[name])
-    if name == "Desired impedance":
-        given = item.given.desired_impedance is not None
-        key = "desired_impedance" if given else "desired_impedance_ratio"
-        return ("controllers", item.name, key)
-    gain = label.split()[0]
-    return ("controllers", item.name, *([gain] if gain in _OF_CONTROLLER else []))
-
 
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
     """Show cost, margins and curves of the impedance controllers."""
     drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
     title = "Impedance controllers: gains, and the worst over the ranges"
-    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items, _place)
+    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items)
     said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
     paragraphs = [Paragraph(" ".join(said))]
     if any(item.band for item in items):
@@ -175,11 +157,10 @@ def by_controller(
     title: str,
     rows: Sequence[tuple[str, Callable[[T], str]]],
     items: Sequence[T],
-    place: Callable[[str, T], At],
 ) -> list[Table]:
     """Make tables with a row for each quantity that some controller has, and a column for each.
 
-    A place says where a spec says what a row shows of a controller.
+    Every number leads to its controller in the spec.
     """
     tables = []
     for start in range(0, len(items), _COLUMNS):
@@ -187,7 +168,7 @@ def by_controller(
         cells = [
             (
                 label if label in _FREQUENCIES else labelled(label),
-                *(linked(loaded, value(item), *place(label, item)) for item in some),
+                *(linked(loaded, value(item), "controllers", item.name) for item in some),
             )
             for label, value in rows
             if any(map(value, items))

@@ -18,7 +18,6 @@ from nrs_design.reporting.sections.head import (
     key_facts,
     lights_of,
     proved_rate,
-    remarks_of,
     summary_of,
 )
 from nrs_design.reporting.sections.mode_logic import logic_section
@@ -79,7 +78,11 @@ def build_report(
             title=spec.title,
             verdict=str(certification.verdict),
             claim=claim_of(certification),
-            remarks=remarks_of(certification),
+            remarks=tuple(
+                statement.claim(system)
+                for statement in certification.statements
+                if statement is not certification.evidence
+            ),
             facts=facts(result),
             sections=tuple(section for section in sections if section is not None),
             summary=summary_of(result),

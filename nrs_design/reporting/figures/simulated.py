@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 # A bound beyond so many times the largest torque is named at the edge, not drawn to scale.
 _FAR = 4.0
-# Two points from each of so many parts of a curve are drawn: its least and its largest value.
-_PARTS = 400
 _FIRST: dict[str, Any] = {"color": BLUE, "lw": 1.6}
 _SECOND: dict[str, Any] = {"color": INK, "lw": 1.2, "linestyle": (0, (6, 2, 1.5, 2))}
 _LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
@@ -131,7 +129,7 @@ def _draw_panel(
     axes: Axes, t: NDArray[np.float64], panel: Panel, handles: dict[str, Artist]
 ) -> None:
     for look, (name, y) in zip((_FIRST, _SECOND), panel.curves.items(), strict=False):
-        (line,) = axes.plot(*_thinned(t, y), label=name, **look)
+        (line,) = axes.plot(t, y, label=name, **look)
         # What stands alone is named by its axis.
         if len(panel.curves) > 1:
             handles.setdefault(name, line)
@@ -139,19 +137,6 @@ def _draw_panel(
         handles.setdefault("limit of the spec", axes.axhline(level, **_LIMIT))
     for level in panel.bounds:
         handles.setdefault(panel.bound, axes.axhline(level, **_BOUND))
-
-
-def _thinned(
-    t: NDArray[np.float64], y: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Thin a curve, keeping the least and the largest value of each part."""
-    if len(t) <= 2 * _PARTS:
-        return t, y
-    kept = {0, len(t) - 1}
-    for part in np.array_split(np.arange(len(t)), _PARTS):
-        kept |= {int(part[y[part].argmin()]), int(part[y[part].argmax()])}
-    picked = np.array(sorted(kept))
-    return t[picked], y[picked]
 
 
 def _shade(

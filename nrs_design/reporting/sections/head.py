@@ -42,9 +42,6 @@ from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
 
-# Labels and values.
-_Facts = list[tuple[str, str]]
-
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
@@ -62,15 +59,6 @@ def claim_of(certification: Certification) -> str:
     return certification.evidence.claim(certification.system)
 
 
-def remarks_of(certification: Certification) -> tuple[str, ...]:
-    """Return the claims of the other statements."""
-    return tuple(
-        statement.claim(certification.system)
-        for statement in certification.statements
-        if statement is not certification.evidence
-    )
-
-
 def facts(result: Result) -> tuple[tuple[str, str], ...]:
     """Return switching, hashes, versions and rates for the head of the report."""
     certification = result.certification
@@ -80,7 +68,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     where = certification.refuted_in
     return (
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
-        ("Switching", linked(result.loaded, switching_words(result), "switching")),
+        ("Switching", linked(result.loaded, _switching(result), "switching")),
         ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
         # What is refuted although the verdict is inconclusive.
@@ -89,8 +77,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
             "Settled by",
             Derived(certification.method if certification.evidence else "nothing", RUNGS),
         ),
-        *_rate(system, certification.evidence),
-        *_limit(certification),
+        *_rates(certification),
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
         ("SHA-256 of the spec", Derived(result.loaded.sha256, SPEC)),
@@ -101,18 +88,16 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     )
 
 
-def switching_words(result: Result) -> str:
+def _switching(result: Result) -> str:
     """Say which switching signals the spec declares, in a few words."""
-    system = result.certification.system
-    switching = system.switching
-    spec = result.loaded.spec
+    system, spec = result.certification.system, result.loaded.spec
     assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
-    words = [str(spec.switching)]
-    if switching.resets:
-        words.append("the state is reset at some switches")
+    words = str(spec.switching)
+    if system.switching.resets:
+        words += "; the state is reset at some switches"
     if system.has_constants:
-        words.append(f"{constants_words(switching)}: unknown but constant")
-    return "; ".join(words)
+        words += f"; {constants_words(system.switching)}: unknown but constant"
+    return words
 
 
 def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fraction | None:
@@ -122,29 +107,24 @@ def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fr
     return evidence.proved_rate(system)
 
 
-def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> _Facts:
-    rate = proved_rate(system, evidence)
+def _rates(certification: Certification) -> Iterator[tuple[str, str]]:
+    """Yield the proved rate, and the bound on the rate that no proof can exceed."""
+    system, evidence = certification.system, certification.evidence
+    rate, limit = proved_rate(system, evidence), certification.rate_limit
     if evidence is None or rate is None:
-        return []
+        return
     constant = "" if evidence.attains_rate else ", not attained"
-    if not evidence.bounds_at_once:
-        constant += ", up to a constant factor"
+    constant += "" if evidence.bounds_at_once else ", up to a constant factor"
     label, text = "Proved contraction rho", at_most(rate, "per step")
     if system.time is Time.CONTINUOUS:
         label, text = "Proved decay rate alpha", at_least(rate, "1/s")
-    return [(label, Derived(f"{text.removeprefix('= ')}{constant}", EVIDENCE))]
-
-
-def _limit(certification: Certification) -> _Facts:
-    """Return the bound on the rate that no proof can exceed."""
-    limit, evidence = certification.rate_limit, certification.evidence
-    if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
-        return []
+    yield label, Derived(f"{text.removeprefix('= ')}{constant}", EVIDENCE)
+    if limit is None:
+        return
     label, text = "No proof can go below", f"{lower(Fraction(limit))} per step"
-    if certification.system.time is Time.CONTINUOUS:
+    if system.time is Time.CONTINUOUS:
         label, text = "No proof can exceed", f"{upper(Fraction(limit))} 1/s"
-    attained = ", which one solution attains (floating point)"
-    return [(label, Derived(f"{text}{attained}", MODES))]
+    yield label, Derived(f"{text}, which one solution attains (floating point)", MODES)
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:

@@ -55,25 +55,13 @@ _SUDDEN = (
 )
 
 
-def _limit(value: float) -> str:
-    """Write a limit of stiffness, rounded down."""
+def _limit(value: float | None) -> str:
+    """Write a limit of stiffness, rounded down; nothing if there is none."""
+    if value is None:
+        return ""
     if math.isnan(value):
         return "not computed"
     return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
-
-
-def _at_arm(item: ImpedanceAnalysis) -> str:
-    return "" if item.limit_at_arm is None else _limit(item.limit_at_arm)
-
-
-def _optimal(item: ImpedanceAnalysis, gain: str) -> str:
-    """Write a gain at the optimum; one that the spec gives was not chosen."""
-    given = getattr(item.given, gain).fixed
-    return "given" if given else number(getattr(item.optimum, gain), 6)
-
-
-def _spring(item: ImpedanceAnalysis) -> str:
-    return number(item.problem.loop.Kt, 6) if item.problem.loop.Kt else ""
 
 
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
@@ -81,14 +69,15 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
     ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
     ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
-    ("Mt at the optimum [kg·m²]", lambda item: _optimal(item, "Mt")),
-    ("Bt at the optimum [N·m·s/rad]", lambda item: _optimal(item, "Bt")),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
-    ("Kt as given [N·m/rad]", _spring),
+    (
+        "Kt as given [N·m/rad]",
+        lambda item: (item.problem.loop.Kt and number(item.problem.loop.Kt, 6)) or "",
+    ),
     ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
     ("k limit [N·m/rad], worst", lambda item: _limit(item.lowest_limit)),
-    ("k limit at the lever arm [N/m], worst", _at_arm),
+    ("k limit at the lever arm [N/m], worst", lambda item: _limit(item.limit_at_arm)),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
     ("Not passive near [Hz], exact", lambda item: _not_passive(item.band)),
 )

@@ -28,36 +28,18 @@ class AuditCheck:
 
 @dataclass(frozen=True, repr=False)
 class Audit(AbstractResult):
-    """Whether a run stayed inside what was proved.
+    """Whether a run stayed inside what was proved."""
 
-    Parameters
-    ----------
-    name : str
-        Of the spec.
-    verdict : {"inside", "outside", "inconclusive"}
-        Inside only if all was judged and the spec is proved.
-    unproved_because : str
-        Why the spec is not proved, so that its ranges are only declared; empty if it is.
-    checks : tuple of AuditCheck
-        One for each bound.
-    first : AuditCheck or None
-        That which was left first.
-    synthetic : bool
-        Whether a simulation made the log.
-    facts : mapping
-        What the command prints by ``--json``.
-    page : callable
-        Draws its page.
-    """
-
-    name: str
-    verdict: str
-    unproved_because: str
-    checks: tuple[AuditCheck, ...]
-    first: AuditCheck | None
-    synthetic: bool
-    facts: Mapping[str, Any]
-    page: Callable[[], Report]
+    name: str  # Of the spec
+    verdict: (
+        str  # ``inside`` if all was judged and the spec is proved; ``outside``, ``inconclusive``
+    )
+    unproved_because: str  # Why the spec is not proved: its ranges are only declared then
+    checks: tuple[AuditCheck, ...]  # One for each bound
+    first: AuditCheck | None  # The bound that was left first
+    synthetic: bool  # Whether a simulation made the log
+    facts: Mapping[str, Any]  # What the command prints by ``--json``
+    page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)

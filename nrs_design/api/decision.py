@@ -82,21 +82,11 @@ class Further:
 
 @dataclass(frozen=True, repr=False)
 class Decision(AbstractResult):
-    """A verdict on stability under switching, with all that carries it.
+    """A verdict on stability under switching, with all that carries it."""
 
-    Parameters
-    ----------
-    result : nrs_design.pipeline.certification.Result
-        The spec with its design, its exact modes, every attempt and the certificate.
-    file : pathlib.Path, optional
-        Where the certificate was written.
-    further : Further, optional
-        What was looked for beside the verdict.
-    """
-
-    result: Result
-    file: Path | None = None
-    further: Further | None = None
+    result: Result  # The spec with its design, exact modes, every attempt and the certificate
+    file: Path | None = None  # Where the certificate was written
+    further: Further | None = None  # What was looked for beside the verdict
 
     @property
     def verdict(self) -> str:
@@ -105,11 +95,7 @@ class Decision(AbstractResult):
 
     @property
     def refuted_in(self) -> str | None:
-        """In which contact alone it is refuted, ``in kept contact``; None where that is decisive.
-
-        Where contact may be lost, growth for which the environment would have to pull leaves the
-        verdict ``inconclusive``.
-        """
+        """In which contact alone it is refuted: ``in kept contact``, or None."""
         return self.result.certification.refuted_in
 
     @property
@@ -227,13 +213,7 @@ class Decision(AbstractResult):
         yield "taken for granted", counted(len(self.assumptions), "thing")
 
     def report(self, file: str | Path | None = None) -> str:
-        """Return the report as one HTML page, and write it if a file is named.
-
-        Raises
-        ------
-        OutputError
-            If the file cannot be written, or its name is that of something else.
-        """
+        """Return the report as one HTML page, and write it if a file is named."""
         from nrs_design.reporting import render_html
 
         if file is not None:
@@ -246,16 +226,8 @@ class Decision(AbstractResult):
     def save(self, folder: str | Path) -> Path:
         """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
 
-        Returns
-        -------
-        Path
-            The certificate, which `nrs_design.verify` checks against the spec.
-
-        Raises
-        ------
-        OutputError
-            If nothing was shown, so that there is no certificate, or a file cannot be written, or
-            another spec stands in its place; or if a file is named, not a folder.
+        Return the certificate, which `nrs_design.verify` checks against the spec. An OutputError if
+        nothing was shown, so that there is no certificate, or another spec stands in its place.
         """
         place, loaded = Path(folder), self.result.loaded
         if place.suffix == ".json":

@@ -39,42 +39,19 @@ class FittedRange:
 
 @dataclass(frozen=True, repr=False)
 class Identification(AbstractResult):
-    """What records say: an estimate, not a proof.
+    """What records say: an estimate, not a proof."""
 
-    Parameters
-    ----------
-    kind : str
-        What they are records of.
-    chosen : str
-        Which law or method was chosen.
-    reason : str
-        Why that one, or what it is about.
-    ranges : mapping of str to FittedRange
-        The numbers, at 95 %: of what covers more, `facts` says it.
-    files : tuple of Path
-        The records.
-    synthetic : bool
-        Whether a simulation made some of them.
-    remarks, doubts, caveats : tuple of str
-        What the numbers rest on, what speaks against them, and what a proof that uses them must
-        know.
-    facts : mapping
-        What the command prints by ``--json``.
-    page : callable
-        Draws its page.
-    """
-
-    kind: str
-    chosen: str
-    reason: str
-    ranges: Mapping[str, FittedRange]
-    files: tuple[Path, ...]
-    synthetic: bool
-    remarks: tuple[str, ...]
-    doubts: tuple[str, ...]
-    caveats: tuple[str, ...]
-    facts: Mapping[str, Any]
-    page: Callable[[], Report]
+    kind: str  # What they are records of
+    chosen: str  # Which law or method was chosen
+    reason: str  # Why that one, or what it is about
+    ranges: Mapping[str, FittedRange]  # The numbers, at 95 %: `facts` says of what covers more
+    files: tuple[Path, ...]  # The records
+    synthetic: bool  # Whether a simulation made some of them
+    remarks: tuple[str, ...]  # What the numbers rest on
+    doubts: tuple[str, ...]  # What speaks against them
+    caveats: tuple[str, ...]  # What a proof that uses them must know
+    facts: Mapping[str, Any]  # What the command prints by ``--json``
+    page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
@@ -117,11 +94,6 @@ def identify(
     columns : mapping of str to str, optional
         Foreign names of columns, as in ``{"force_N": "Fz"}``; of a delay, which columns are its
         ``command`` and what was ``measured``.
-
-    Raises
-    ------
-    DataError
-        If a file is no such record, or there is no such kind, law or column.
 
     Examples
     --------

@@ -74,11 +74,6 @@ def certify(
     Decision
         With verdict, decay rate, evidence, assumptions and attempts.
 
-    Raises
-    ------
-    SpecError
-        If the input is wrong.
-
     Examples
     --------
     >>> import nrs_design as nrs
@@ -126,11 +121,6 @@ def check_lyapunov(
     -------
     LyapunovCheck
         Strict, weak or neither; a proved rate; the failing mode with a vector that shows it.
-
-    Raises
-    ------
-    SpecError
-        If the input is wrong.
 
     Examples
     --------

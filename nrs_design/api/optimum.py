@@ -25,15 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Optimum(AbstractResult):
-    """The design of a spec.
+    """The design of a spec."""
 
-    Parameters
-    ----------
-    designed : nrs_design.pipeline.design.Designed
-        The spec with its plant and gains.
-    """
-
-    designed: Designed
+    designed: Designed  # The spec with its plant and gains
 
     @property
     def gains(self) -> dict[str, dict[str, float]]:

@@ -19,20 +19,10 @@ from nrs_design.spec import read_spec
 
 @dataclass(frozen=True, repr=False)
 class Recheck(AbstractResult):
-    """What a re-check says of a certificate.
+    """What a re-check says of a certificate."""
 
-    Parameters
-    ----------
-    file : Path
-        The certificate.
-    spec : Path or None
-        That it was held against.
-    outcome : nrs_design.certificates.prove.Verification
-        Of the check.
-    """
-
-    file: Path
-    spec: Path | None
+    file: Path  # The certificate
+    spec: Path | None  # What it was held against
     outcome: Verification
 
     @property
@@ -118,14 +108,9 @@ def verify(certificate: str | Path, spec: str | Path | None = None) -> Recheck:
     -------
     Recheck
         Its `fault` says why the certificate is rejected, None if it is valid. Its
-        `verdict` may be ``refuted``; true in a condition if it is a proof.
-
-    Raises
-    ------
-    SpecError, CertificateError
-        If a file cannot be read at all.
+        `verdict` may be ``refuted``; true in a condition if it is a proof. What cannot be read at
+        all raises a SpecError or CertificateError.
     """
-    file = Path(certificate)
-    if spec is None:
-        return Recheck(file, None, verify_file(file))
-    return Recheck(file, Path(spec), verify_file(file, read_spec(spec)))
+    file, against = Path(certificate), None if spec is None else Path(spec)
+    loaded = None if against is None else read_spec(against)
+    return Recheck(file, against, verify_file(file, loaded))

@@ -70,11 +70,6 @@ class AbstractResult(ABC):
             Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in, with letters of
             8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with XeLaTeX or LuaLaTeX, PGF. Where
             a publisher takes no Type 3 fonts, set ``matplotlib.rcParams["pdf.fonttype"] = 42``.
-
-        Raises
-        ------
-        DesignError
-            If there is no such figure or width; the message lists those that there are.
         """
         from nrs_design.reporting.style import for_paper
 

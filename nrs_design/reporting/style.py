@@ -235,7 +235,7 @@ def write_ticks_in_full(figure: Figure) -> None:
     class InPowers(LogFormatter):
         def __call__(self, value: float, pos: int | None = None) -> str:
             # Where the axis spans few decades, ticks between powers have labels, too.
-            return in_full(value, value) if super().__call__(value, pos) else ""
+            return in_full(value, abs(value) or 1.0) if super().__call__(value, pos) else ""
 
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):

@@ -15,7 +15,7 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.simulated import Panel, draw_panels, stays_of
+from nrs_design.reporting.figures.simulated import Panel, draw_panels, iterate_stays
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.run import common_lever_arm
 from nrs_design.simulation.worst_case import DEFLECTION, WorstRun, output_values, pushes_only
@@ -130,7 +130,7 @@ def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> F
     free = () if case.system.contact is None else case.system.contact.free
     modes = [_controller(mode.name) for mode in (*case.system.modes, *free)]
     active = [modes[mode] for mode in run.mode.tolist()]
-    return draw_panels(run.time, panels, [*stays_of(run.time, active)])
+    return draw_panels(run.time, panels, [*iterate_stays(run.time, active)])
 
 
 def _controller(mode: str) -> str:

@@ -12,8 +12,7 @@ from nrs_design.reporting.figures.run import draw_run
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
-from tests.reporting.conftest import KINDS, ROOT, cases, report_of
-from tests.simulation.interactions import INSERTION, text_of
+from tests.reporting.conftest import KINDS, ROOT, cases
 from tests.support import COMMUTING, GIVEN, SOFT_TISSUE, family, replaced, write_spec
 
 # Figures by their names, in order.
@@ -137,7 +136,7 @@ def test_inconclusive_report_says_so_plainly(report):
 
 @pytest.mark.parametrize(
     "case",
-    cases(("proved", "force", "discrete", "polynomial", "dwell", "steps", "parameter")),
+    cases(("proved", "force", "discrete", "polynomial", "dwell", "parameter")),
 )
 def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
@@ -210,10 +209,6 @@ SAID = {
             "exponentials over the dwell time are enclosed rigorously",
         ],
     ),
-    "steps": (
-        ["Switching: dwell time 4 steps, 2 allowed transitions", "per step, up to a constant"],
-        ["Switching earlier than 4 steps", "Switches that the spec does not list."],
-    ),
     "resets": (
         ["the state is reset at some switches", "2 modes of at most 2 states"],
         ["The resets are part of the claim", "other than the declared resets"],
@@ -225,10 +220,6 @@ SAID = {
     "blocks": (
         ["not attained, up to a constant factor"],
         ["at any rate slower than that of the slowest block", "the proof does not need one"],
-    ),
-    "blocks-refuted": (
-        ["Settled by: blocks: "],
-        ["so a family with an unstable block is unstable", "It is not said that the robot will"],
     ),
     "period": (
         ["Switching: arbitrary"],
@@ -245,14 +236,6 @@ SAID = {
     "mixture": (
         ["Switching: arbitrary"],
         ["so would be every average of them", "Nothing is said about slower switching"],
-    ),
-    "value": (
-        ["k in its range: unknown but constant"],
-        [
-            "At k = 2, which the range allows and which does not change: Mode m is not Hurwitz",
-            "it may have this one value all the time",
-            "Nothing is said about other values of the parameter",
-        ],
     ),
     "refuted": (["Switching: arbitrary"], ["exponential stability under arbitrary switching is"]),
     "inconclusive": (
@@ -293,18 +276,6 @@ def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
     assert "a mean growth rate of" in words(report("period"))
 
 
-def test_dwell_run_keeps_the_dwell_time(report):
-    below = figure(report("dwell"), "run").figure.axes[1]
-    spans = [
-        (path.vertices[:, 0].min(), path.vertices[:, 0].max())
-        for row in below.collections
-        for path in row.get_paths()
-    ]
-    last = max(end for _, end in spans)
-    assert len(spans) > 4
-    assert all(end - begin >= 2.76 - 1e-9 for begin, end in spans if end < last)
-
-
 def test_obstruction_weights_sum_to_one(report):
     table = table_of(report("polynomial"), "No common quadratic function")
     assert {row[0] for row in table.rows} <= {"a", "b"}
@@ -317,18 +288,6 @@ def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
     text = words(build_report(run_certification(read_spec(path))))
     assert "The proof does not need the declared rules of switching" in text
     assert "The run switches freely, which is more than the spec allows." in text
-
-
-def test_curves_that_coincide_are_told_apart(tmp_path):
-    names = ("insertion-0", "insertion-1")
-    (tmp_path / "alike.nrs.yaml").write_text(text_of(dict.fromkeys(names, INSERTION)))
-    (axes,) = figure(report_of(tmp_path / "alike.nrs.yaml"), "displayed-impedance").figure.axes
-    curves = {line.get_label(): line for line in axes.get_lines()}
-    first, second = (curves[f"insertion-{i}, displayed"] for i in (0, 1))
-    assert (first.get_ydata() == second.get_ydata()).all()
-    assert first.get_marker() != second.get_marker()
-    (a, step), (b, _) = first.get_markevery(), second.get_markevery()
-    assert (a - b) % step != 0
 
 
 def test_modes_without_a_row_of_their_own_are_named_together():

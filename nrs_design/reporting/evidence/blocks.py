@@ -15,7 +15,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page
-from nrs_design.reporting.evidence.runs import EUCLIDEAN, Greedy, free_modes, trials_per_step
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, Greedy, freely_switched, trials_per_step
 from nrs_design.reporting.formatting import shortened
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
@@ -100,7 +100,7 @@ def _structure(blocks: list[SwitchedSystem], offer: Offer, page_of: PageOf) -> S
 
 def _run(system: SwitchedSystem, rate: float) -> Section:
     """Draw a run of the whole family, beside the rate of its slowest block."""
-    identity, played = np.eye(system.order), free_modes(system, None, trials_per_step(system))
+    identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))
     norm, initial = quadratic_norm(identity), worst_direction(played, identity)
     greedy = Greedy(system, played, norm, initial, rate)
     return greedy.draw(_RUN, EUCLIDEAN, "slope of the slowest block, ")

@@ -20,7 +20,7 @@ from nrs_design.reporting.evidence.offers import Form, Offer, Page
 from nrs_design.reporting.evidence.runs import (
     Greedy,
     bounded_run,
-    free_modes,
+    freely_switched,
     ruled_run,
     slowest_in_a_round,
     trials_per_step,
@@ -159,11 +159,11 @@ class _Functions:
         tried = trials_per_step(system)
         if len(forms) == 1 and self._form.degree == 1:
             label, (Q,) = "in the norm of Q", scaled_matrices(self._form.Q)
-            played = free_modes(system, Q, tried)
+            played = freely_switched(system, Q, tried)
             initial = worst_direction(played, Q)
         else:
             label = f"in V^(1/{2 * self._form.degree})" if len(forms) == 1 else label
-            played = free_modes(system, None, min(tried, _MODES))
+            played = freely_switched(system, None, min(tried, _MODES))
             initial = sampled_direction(played, norm, fine_step(played))
         if self._lost:
             played = replace(played, contact=system.contact)
@@ -267,7 +267,7 @@ def _run_at_corner(system: SwitchedSystem, evidence: AbstractEvidence, offer: Of
     k = rates.index(slowest(rates))
     fixed, P, proved = corners[k], forms[k], evidence.proved_rate(system)
     assert proved is not None  # it shows stability
-    played = free_modes(fixed, P, trials_per_step(fixed))
+    played = freely_switched(fixed, P, trials_per_step(fixed))
     return bounded_run(
         Greedy(fixed, played, quadratic_norm(P), worst_direction(played, P), float(proved)),
         "in the norm of P at this corner",

@@ -112,7 +112,7 @@ def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
     return greedy.draw(text, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", BOUND)
 
 
-def free_modes(system: SwitchedSystem, Q: Array | None, limit: int) -> SwitchedSystem:
+def freely_switched(system: SwitchedSystem, Q: Array | None, limit: int) -> SwitchedSystem:
     """Return the slowest modes of a system, in kept contact, to be switched freely."""
     switching = system.switching if system.clock is not None else ARBITRARY
     return replace(hardest_modes(system, Q, limit), contact=None, switching=switching)
@@ -166,7 +166,7 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     """Draw an adversarial run of a system about which nothing is proved."""
     if system.clock is None and not system.switching.is_arbitrary:
         return ruled_run(system)
-    identity, played = np.eye(system.order), free_modes(system, None, trials_per_step(system))
+    identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))
     norm, initial = quadratic_norm(identity), identity[-1]
     if system.clock is None:
         return Greedy(system, played, norm, worst_direction(played, identity)).draw(

@@ -131,6 +131,7 @@ def _mark(
 _FAR = 10.0
 # Share of a half axis that the linear part takes, over that of the logarithmic one.
 _LINEAR_SHARE = 1.5
+_DECADES = 3
 
 
 def show_half_plane(
@@ -185,8 +186,22 @@ def _set_axis(
         far = max(-low, high)
         share = _LINEAR_SHARE * math.log10(far / end)
         getattr(axes, f"set_{name}scale")("symlog", linthresh=end, linscale=share)
+        ticks = [x for x in _ticks(end, far) if low <= x <= high]
+        texts = [in_full(tick, abs(tick) or 1.0) for tick in ticks]
+        getattr(axes, f"set_{name}ticks")(ticks, texts)
+        getattr(axes, f"set_{name}ticks")([], minor=True)
         label += f", logarithmic beyond ±{in_full(end, end)}"
     getattr(axes, f"set_{name}lim")(low, high)
     getattr(axes, f"set_{name}label")(f"{label} [{unit}]")
     if name == "y":
         axes.axhline(0.0, color=MUTED, linewidth=0.8, zorder=1)
+
+
+def _ticks(end: float, far: float) -> list[float]:
+    """Return ticks of the linear and of the logarithmic part."""
+    from nrs_design.plotting import MaxNLocator
+
+    linear = [float(x) for x in MaxNLocator(6).tick_values(-end, end) if abs(x) <= end]
+    first, last = math.ceil(math.log10(2 * end)), math.floor(math.log10(far))
+    powers = range(first, last + 1, 1 + (last - first) // _DECADES)
+    return sorted([*linear, *(sign * 10.0**power for sign in (-1, 1) for power in powers)])

@@ -88,10 +88,12 @@ def draw_simulated(
         Panel(f"Deflection [{length}]", {"deflection": scale * response["depth"]}),
         Panel(labelled("Velocity [deg/s]"), speeds, (fastest, -fastest)),
     )
-    return draw_panels(response.t, panels, [*stays_of(response.t, response.active)], title)
+    return draw_panels(response.t, panels, [*iterate_stays(response.t, response.active)], title)
 
 
-def stays_of(t: NDArray[np.float64], active: Sequence[str]) -> Iterator[tuple[float, float, str]]:
+def iterate_stays(
+    t: NDArray[np.float64], active: Sequence[str]
+) -> Iterator[tuple[float, float, str]]:
     """Yield begin and end of every stay, and the name that is active from one time to the next."""
     begin = 0
     for name, steps in groupby(active):

@@ -16,28 +16,16 @@ if TYPE_CHECKING:
 
 
 class Linked(str):
-    """Text with a link to a line of the spec, counted from 1."""
+    """Text with a link: to a line of the spec, counted from 1, or to a section by its title."""
 
-    __slots__ = ("line",)
+    __slots__ = ("line", "section")
     line: int
-
-    def __new__(cls, text: str, line: int) -> Self:
-        """Attach a line to a text."""
-        made = super().__new__(cls, text)
-        made.line = line
-        return made
-
-
-class Derived(str):
-    """Text, such as a number at the head, with a link to the section, by title, that derives it."""
-
-    __slots__ = ("section",)
     section: str
 
-    def __new__(cls, text: str, section: str) -> Self:
-        """Attach a section to a text."""
+    def __new__(cls, text: str, line: int = 0, section: str = "") -> Self:
+        """Attach a line or a section to a text."""
         made = super().__new__(cls, text)
-        made.section = section
+        made.line, made.section = line, section
         return made
 
 
@@ -128,9 +116,7 @@ class Report:
     # name, title: of the spec; the title may be empty.
     name: str
     title: str
-    # Of the certification, the judgement of a run, a comparison or a robot, or that this is an
-    # identification, or a gallery of runs.
-    verdict: str
+    verdict: str  # Of the certification, of a run or a robot, or that this is an identification
     claim: str  # What the certificate states about stability, or that nothing is known
     # What else is shown, such as that no common quadratic function exists.
     remarks: tuple[str, ...]

@@ -39,9 +39,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
 
-# The run under the worst signal that was found, beside its proved bound.
-LEAD = "run"
-
 
 def build_report(
     result: Result,
@@ -88,7 +85,7 @@ def build_report(
             summary=summary_of(result),
             lights=lights_of(result, analysis),
             key=key_facts(result, analysis),
-            lead=LEAD,
+            lead="run",  # Under the worst signal that was found, beside its proved bound
             certificate=canonical(to_document(result.certificate)) if result.certificate else "",
             date=date,
         )

@@ -11,7 +11,6 @@ from nrs_design.axis import current, labelled
 from nrs_design.axis import unit as shown
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result
-from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
@@ -86,24 +85,20 @@ def worst_case_section(result: Result) -> Section | None:
         said = f"{error.message[0].upper()}{error.message[1:]}."
         return Section(_TITLE, (Paragraph(said),))
     undeclared = "" if case.declared else f"{UNDECLARED} "
-    said = f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. "
-    rows = tuple(_linked(designed, row) for row in worst_rows(case, designed.spec))
-    drawn = draw_worst(case, case.runs[0], designed.spec)
-    return Section(
-        _TITLE,
-        (
-            Paragraph(f"{said}Floating point, no part of the proof."),
-            Table("Worst found, limit and bound", COLUMNS, rows),
-            Illustration("worst-case", "The worst run found", _CAPTION, drawn),
-        ),
+    said = (
+        f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. Floating point, no part of the proof."
     )
-
-
-def _linked(designed: Designed, row: list[str]) -> tuple[str, ...]:
-    """Return a row in which the limit leads to the line that sets it."""
-    name, found, unit, limit, *rest = row
-    key = "torque" if name == "force" else name
-    return (name, found, unit, linked(designed.loaded, limit, "limits", key), *rest)
+    rows, loaded = [], designed.loaded
+    for name, found, unit, limit, *rest in worst_rows(case, designed.spec):
+        key = "torque" if name == "force" else name
+        rows.append((name, found, unit, linked(loaded, limit, "limits", key), *rest))
+    figure = draw_worst(case, case.runs[0], designed.spec)
+    blocks = (
+        Paragraph(said),
+        Table("Worst found, limit and bound", COLUMNS, tuple(rows)),
+        Illustration("worst-case", "The worst run found", _CAPTION, figure),
+    )
+    return Section(_TITLE, blocks)
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:

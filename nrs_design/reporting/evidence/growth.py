@@ -62,10 +62,7 @@ _AT_A_VALUE = (
     "The parameter is unknown and constant, so it may have this one value all the time. The "
     "matrices at this value are computed exactly."
 )
-_AT_THIS_VALUE = (
-    "What follows is simulated at the value of the parameter that the claim names, between the "
-    "modes that are listed."
-)
+_AT_THIS_VALUE = "Simulated at the value of the parameter that the claim names."
 _FROM_THE_FASTEST = (
     "Simulated from the direction that grows the most, with every mode for its time and every "
     "reset of its switches."

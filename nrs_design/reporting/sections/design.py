@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import unit
@@ -42,6 +43,7 @@ _UNSTABLE = (
     "stable."
 )
 _MOTION = ("motion_loop",)
+_NATURAL = "Natural frequency [rad/s]"
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     (
@@ -51,7 +53,7 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
     ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
-    ("Natural frequency [rad/s]", lambda item: number(item.loop.natural_frequency)),
+    (_NATURAL, lambda item: number(item.loop.natural_frequency)),
     ("Offset X_i", lambda item: item.approach.offset),
     ("Steady error over command [1]", lambda item: number(item.steady_error)),
     ("Peak torque [N·m]", lambda item: "–" if item.peak is None else number(item.peak)),
@@ -135,20 +137,15 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
 
 
 def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Table:
-    design = designed.design
-    reached, motion = analysis.reached, design.motion
+    reached, motion, command = analysis.reached, designed.design.motion, designed.design.command
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
-    per, Kp = unit("rad"), wanted.derivative_gain * wanted.zero
+    per, six = unit("rad"), partial(number, digits=6)
+    Kd, zero, omega = wanted.derivative_gain, wanted.zero, wanted.natural_frequency
     # The key of the spec that says most of a row, its label, and what is wanted and reached.
     rows = (
-        (
-            "derivative_gain",
-            f"Kd [{design.command}·s/{per}]",
-            number(wanted.derivative_gain, 6),
-            number(float(motion.Kd), 6),
-        ),
-        ("zero", "Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
-        ("zero", f"Kp [{design.command}/{per}]", number(Kp, 6), number(float(motion.Kp), 6)),
+        ("derivative_gain", f"Kd [{command}·s/{per}]", six(Kd), six(float(motion.Kd))),
+        ("zero", "Zero Kp/Kd [1/s]", six(zero), six(float(motion.zero))),
+        ("zero", f"Kp [{command}/{per}]", six(Kd * zero), six(float(motion.Kp))),
         (
             "settling_time",
             "Poles [rad/s]",
@@ -156,12 +153,7 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
             roots(reached.poles, 5),
         ),
         ("damping_ratio", "Damping ratio [1]", number(damping), number(reached.damping_ratio)),
-        (
-            "settling_time",
-            "Natural frequency [rad/s]",
-            number(wanted.natural_frequency),
-            number(reached.natural_frequency),
-        ),
+        ("settling_time", _NATURAL, number(omega), number(reached.natural_frequency)),
         ("damping_ratio", "Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
         ("settling_time", "Bandwidth [rad/s]", "–", number(reached.bandwidth)),
     )
@@ -192,14 +184,14 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
 
 def force_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
     """Say what the force controllers achieve at nominal values."""
-    title = "Force controllers, at nominal values"
-    tables = by_controller(designed.loaded, title, _FORCE_ROWS, analysis.force)
-    texts = [Paragraph(_NOMINAL)]
-    if any(item.peak is not None for item in analysis.force):
-        texts.append(Paragraph(_OFFSET))
-    if any(item.approach.offset == "none" for item in analysis.force):
-        texts.append(Paragraph(_NO_OFFSET))
-    return (*texts, *tables)
+    items, title = analysis.force, "Force controllers, at nominal values"
+    texts = {
+        _NOMINAL: True,
+        _OFFSET: any(item.peak is not None for item in items),
+        _NO_OFFSET: any(item.approach.offset == "none" for item in items),
+    }
+    said = (Paragraph(text) for text, applies in texts.items() if applies)
+    return (*said, *by_controller(designed.loaded, title, _FORCE_ROWS, items))
 
 
 def _force_locus(item: ForceAnalysis) -> Illustration:
@@ -212,9 +204,5 @@ def _force_locus(item: ForceAnalysis) -> Illustration:
         f"{unit('rad/(N·m)')}."
     )
     figure = draw_root_locus(open_loop, (), item.loop.poles)
-    return Illustration(
-        f"force-locus-{item.name}",
-        f"Root locus of the force loop: {item.name}",
-        caption,
-        figure,
-    )
+    title = f"Root locus of the force loop: {item.name}"
+    return Illustration(f"force-locus-{item.name}", title, caption, figure)

@@ -20,7 +20,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Derived, Light, State
+from nrs_design.reporting.document import Light, Linked, State
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.places import linked
@@ -69,21 +69,23 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     return (
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
         ("Switching", linked(result.loaded, _switching(result), "switching")),
-        ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
+        ("Switches among", Linked(f"{count}, in {system.time} time", section=MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
         # What is refuted although the verdict is inconclusive.
-        *(() if where is None else (("Refuted", Derived(where, MEANT)),)),
+        *(() if where is None else (("Refuted", Linked(where, section=MEANT)),)),
         (
             "Settled by",
-            Derived(certification.method if certification.evidence else "nothing", RUNGS),
+            Linked(certification.method if certification.evidence else "nothing", section=RUNGS),
         ),
         *_rates(certification),
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
-        ("SHA-256 of the spec", Derived(result.loaded.sha256, SPEC)),
+        ("SHA-256 of the spec", Linked(result.loaded.sha256, section=SPEC)),
         (
             "Certificate id",
-            Derived(result.certificate.id if result.certificate else "no certificate", RECHECK),
+            Linked(
+                result.certificate.id if result.certificate else "no certificate", section=RECHECK
+            ),
         ),
     )
 
@@ -118,13 +120,13 @@ def _rates(certification: Certification) -> Iterator[tuple[str, str]]:
     label, text = "Proved contraction rho", at_most(rate, "per step")
     if system.time is Time.CONTINUOUS:
         label, text = "Proved decay rate alpha", at_least(rate, "1/s")
-    yield label, Derived(f"{text.removeprefix('= ')}{constant}", EVIDENCE)
+    yield label, Linked(f"{text.removeprefix('= ')}{constant}", section=EVIDENCE)
     if limit is None:
         return
     label, text = "No proof can go below", f"{lower(Fraction(limit))} per step"
     if system.time is Time.CONTINUOUS:
         label, text = "No proof can exceed", f"{upper(Fraction(limit))} 1/s"
-    yield label, Derived(f"{text}, which one solution attains (floating point)", MODES)
+    yield label, Linked(f"{text}, which one solution attains (floating point)", section=MODES)
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:
@@ -272,7 +274,7 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     doubts = () if analysis is None else analysis.warnings
     if doubts and doubts[0].beyond:
         more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
-        yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
+        yield "Worst of it", Linked(f"{doubts[0]}{more}", section=GOALS)
 
 
 def _force(result: Result) -> Iterator[tuple[str, str]]:
@@ -285,7 +287,7 @@ def _force(result: Result) -> Iterator[tuple[str, str]]:
     if bound is not None:
         size = f"{upper(bound.level, _DIGITS)} {bound.output.unit}"
         text = f"{size} at most, under the declared disturbances"
-    yield "Largest force", Derived(text, EVIDENCE)
+    yield "Largest force", Linked(text, section=EVIDENCE)
 
 
 def _gains(result: Result) -> Iterator[tuple[str, str]]:
@@ -299,7 +301,7 @@ def _gains(result: Result) -> Iterator[tuple[str, str]]:
             for gain, value in controller.law.gains.items()
         )
         if said:
-            yield f"Gains of {controller.name}", Derived(said, "Designed gains")
+            yield f"Gains of {controller.name}", Linked(said, section="Designed gains")
 
 
 def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
@@ -311,10 +313,10 @@ def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
         arm = weakest.limit_at_arm
         limit, per = (weakest.lowest_limit, unit("N*m/rad")) if arm is None else (arm, "N/m")
         size = "any stiffness" if math.isinf(limit) else f"{lower(Fraction(limit), _DIGITS)} {per}"
-        yield "Stands up to", Derived(f"{size} ({weakest.name}; floating point)", GOALS)
+        yield "Stands up to", Linked(f"{size} ({weakest.name}; floating point)", section=GOALS)
     if [*_worst(analysis)]:
         return
     worst = max(analysis.impedance, key=lambda item: item.worst(SENSITIVITY_PEAK).value)
     value = SENSITIVITY_PEAK.text(worst.worst(SENSITIVITY_PEAK).value)
     said = f"sensitivity peak {value} ({worst.name}; usual: {SENSITIVITY_PEAK.usual})"
-    yield "Worst margin", Derived(said, GOALS)
+    yield "Worst margin", Linked(said, section=GOALS)

@@ -222,9 +222,7 @@ def obstruction_page(system: SwitchedSystem, _: AbstractEvidence, offer: Offer) 
         heaviest = offer.weights[:_LISTED]
         rows = tuple((name, number(float(share), 4)) for name, share in heaviest)
         some = f", the {_LISTED} heaviest" if len(offer.weights) > _LISTED else ""
-        left_out = len(system.modes) - len(offer.weights)
-        none = f"; {left_out} modes have no part in it" if left_out else ""
-        title = f"Weight of the modes in the contradiction{some}{none}"
+        title = f"Weight of the modes in the contradiction{some}"
         table = Table(title, ("Mode", "Share of the trace of X [1]"), rows)
         return (Section("No common quadratic function", (Paragraph(text), table)),)
 

@@ -135,10 +135,10 @@ def _draw_panel(
         # What stands alone is named by its axis.
         if len(panel.curves) > 1:
             handles.setdefault(name, line)
-    for level in panel.limits:
-        handles.setdefault("limit of the spec", axes.axhline(level, **_LIMIT))
-    for level in panel.bounds:
-        handles.setdefault(panel.bound, axes.axhline(level, **_BOUND))
+    lines = [(level, "limit of the spec", _LIMIT) for level in panel.limits]
+    lines += [(level, panel.bound, _BOUND) for level in panel.bounds]
+    for level, label, look in lines:
+        handles.setdefault(label, axes.axhline(level, label=label, **look))
 
 
 def _shade(

@@ -261,12 +261,8 @@ _DIGITS = 4
 
 def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     """Return labels and values for the head of the page, each on the safe side."""
-    return (
-        *_worst(analysis),
-        *_force(result),
-        *_gains(result),
-        *_achieved(analysis),
-    )
+    design = (*_gains(result), *_achieved(analysis))
+    return (*_worst(analysis), *_modes(result), *_force(result), *design)
 
 
 def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
@@ -275,6 +271,13 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     if doubts and doubts[0].beyond:
         more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
         yield "Worst of it", Linked(f"{doubts[0]}{more}", section=GOALS)
+
+
+def _modes(result: Result) -> Iterator[tuple[str, str]]:
+    system = result.certification.system
+    if not isinstance(result.loaded.spec, InteractionDesignSpec):
+        names = shortened([mode.name for mode in system.modes], 4)
+        yield "Modes", Linked(f"{names}; {system.time} time", section=MODES)
 
 
 def _force(result: Result) -> Iterator[tuple[str, str]]:

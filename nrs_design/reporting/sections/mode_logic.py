@@ -24,8 +24,7 @@ def logic_section(spec: InteractionDesignSpec) -> Section | None:
     """Describe the mode logic of a spec, if it has one."""
     if spec.mode_logic is None:
         return None
-    words = tuple(Paragraph(text) for text in logic_meaning(spec))
-    return Section("Mode logic", (*words, *logic_tables(spec)))
+    return Section("Mode logic", (*map(Paragraph, logic_meaning(spec)), *logic_tables(spec)))
 
 
 def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:

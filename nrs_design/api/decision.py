@@ -40,17 +40,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Further:
-    """Margins, growth and remedies, which a command looks for once it has a verdict."""
+    """Margins, growth and remedies, which a command searches after the verdict."""
 
     margins: ProofMargins
     growth: RadiusBounds | None
     blocked: Blocked | None
     relief: tuple[str, ...]
     steps: tuple[str, ...]
-    history: Sequence[tuple[int, float]] = ()  # Of the gradient iteration: updates and value
+    history: Sequence[tuple[int, float]] = ()  # Updates and values of the gradient iteration
 
     def facts(self, spec: Path) -> dict[str, Any]:
-        """Return what ``--json`` prints of it."""
+        """Return the content of ``--json``."""
         return (
             radius_facts(self.growth)
             | margins_facts(self.margins)
@@ -60,10 +60,10 @@ class Further:
         )
 
     def lines(self, loaded: LoadedSpec, *, verbose: bool) -> Iterator[str]:
-        """Yield it in words; with all details, or the most promising remedy alone."""
+        """Yield the findings in words; verbose: all details and remedies."""
         if self.growth is not None:
             yield f"  {_growth_line(self.growth, verbose=verbose)}"
-        # What would be proved instead is a better remedy than the others.
+        # A proved change of the spec is a better remedy than the others.
         is_helped = self.blocked is not None and bool(self.blocked.proved)
         if verbose or not is_helped:
             yield from (f"  {line}" for line in self.relief)
@@ -85,8 +85,8 @@ class Decision(AbstractResult):
     """A verdict on stability under switching, with all that carries it."""
 
     result: Result  # The spec with its design, exact modes, every attempt and the certificate
-    file: Path | None = None  # Where the certificate was written
-    further: Further | None = None  # What was looked for beside the verdict
+    file: Path | None = None  # Path of the written certificate
+    further: Further | None = None  # Margins and remedies
 
     @property
     def verdict(self) -> str:
@@ -95,7 +95,7 @@ class Decision(AbstractResult):
 
     @property
     def refuted_in(self) -> str | None:
-        """In which contact alone it is refuted: ``in kept contact``, or None."""
+        """Contact in which alone the loop is refuted: ``in kept contact``, or None."""
         return self.result.certification.refuted_in
 
     @property
@@ -116,23 +116,23 @@ class Decision(AbstractResult):
 
     @property
     def claim(self) -> str:
-        """What is claimed about stability, in words."""
+        """Claim about stability, in words."""
         from nrs_design.reporting.sections.head import claim_of
 
         return claim_of(self.result.certification)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """What the claim takes for granted."""
+        """Assumptions of the claim."""
         return sentences(self.result.certification.granted)
 
     @property
     def attempts(self) -> tuple[Attempt, ...]:
-        """Every step of the search: what was tried, how it ended, and its time in s."""
+        """Every search step with its outcome and its time in s."""
         return self.result.certification.attempts
 
     def why(self) -> tuple[str, ...]:
-        """Return which lines of the spec keep it from being proved; empty unless inconclusive.
+        """Return the lines of the spec that prevent a proof; empty unless inconclusive.
 
         Single lines are changed, and the spec is certified again each time: that takes up to half
         of the budget of the spec. `nrs_design.pipeline.blocked.find_blocked` has all that is found.
@@ -175,7 +175,7 @@ class Decision(AbstractResult):
         return facts if self.further is None else facts | self.further.facts(path)
 
     def lines(self, *, verbose: bool = False) -> Iterator[str]:
-        """Yield verdict, claims and goals in words; verbose: all of the claims and attempts."""
+        """Yield verdict, claims and goals in words; verbose: full claims and all attempts."""
         from nrs_design.certificates.goals import certified_goals
 
         found, result = self.result.certification, self.result
@@ -196,7 +196,7 @@ class Decision(AbstractResult):
             yield f"  {goal.line}"
 
     def _drawings(self) -> Figures:
-        # The run beside its bound says most; those of the design take longer.
+        # The run with its bound comes first; figures of the design take longer.
         seen = set()
         for name, draw in evidence_drawings(self.result.certification):
             seen.add(name)
@@ -224,7 +224,7 @@ class Decision(AbstractResult):
         return page
 
     def save(self, folder: str | Path) -> Path:
-        """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
+        """Write ``NAME.cert.json``, and the spec if no file has the same content.
 
         Return the certificate, which `nrs_design.verify` checks against the spec. An OutputError if
         nothing was shown, so that there is no certificate, or another spec stands in its place.

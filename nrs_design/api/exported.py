@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Exported(AbstractResult):
-    """The gains that ship with their proof, or why there are none."""
+    """Exported gains with their proof, or the reason for none."""
 
     loaded: LoadedSpec
     export: Export  # What may be exported
@@ -46,7 +46,7 @@ class Exported(AbstractResult):
 
     @property
     def record(self) -> ExportRecord | None:
-        """What is exported: gains, exactly and as float32, and what is proved of them."""
+        """Exported gains, exactly and as float32, with their proof."""
         return self.export.record
 
     @property
@@ -55,7 +55,7 @@ class Exported(AbstractResult):
         return self.export.certificate
 
     def save(self, folder: str | Path, format: str = "json") -> tuple[Path, ...]:
-        """Write the files of a format, and the certificate beside them first.
+        """Write the certificate and the files of a format.
 
         The format is as `nrs-design export --list` names it. Files of the format are returned;
         ``NAME.cert.json`` is beside them. A DesignError if nothing may be exported, or a processor

@@ -1,4 +1,4 @@
-"""What records say about a tissue, an actuator or a delay, as the library gives it."""
+"""Identified tissue, actuator or delay, as a result of the library."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class FittedRange:
 class Identification(AbstractResult):
     """What records say: an estimate, not a proof."""
 
-    kind: str  # What they are records of
+    kind: str  # Kind of the records
     chosen: str  # Which law or method was chosen
-    reason: str  # Why that one, or what it is about
+    reason: str  # Reason of the choice, or its subject
     ranges: Mapping[str, FittedRange]  # The numbers, at 95 %: `facts` says of what covers more
     files: tuple[Path, ...]  # The records
-    synthetic: bool  # Whether a simulation made some of them
-    remarks: tuple[str, ...]  # What the numbers rest on
-    doubts: tuple[str, ...]  # What speaks against them
-    caveats: tuple[str, ...]  # What a proof that uses them must know
-    facts: Mapping[str, Any]  # What the command prints by ``--json``
+    synthetic: bool  # Some records come from a simulation
+    remarks: tuple[str, ...]  # Assumptions of the numbers
+    doubts: tuple[str, ...]  # Reasons against the numbers
+    caveats: tuple[str, ...]  # Conditions for a proof that uses the numbers
+    facts: Mapping[str, Any]  # Content of ``--json``
     page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
@@ -87,7 +87,7 @@ def identify(
     records : path-like, mapping of str to array, DataFrame, or iterable of these
         CSV files, or columns by name; see `nrs-design identify` for the names. Of a delay, one.
     kind : {"tissue", "actuator", "delay"}
-        What they are records of. Resistance and torque of an actuator are said for the motor of
+        Kind of the records. Resistance and torque of an actuator are said for the motor of
         thesis table 4.1; gain, time constant, friction and dead time depend on no data sheet.
     law : str, optional
         Of the tissue; by default the one that the records speak for.

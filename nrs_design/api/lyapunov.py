@@ -39,7 +39,7 @@ DIGITS = (1, 2, 4, 8, 16)
 # A longer number is written rounded in words.
 LONGEST = 60
 _LAW = {"continuous": "x' = A x", "discrete": "x+ = A x"}
-# What must be negative, by time and whether a rate is asked for.
+# Form that must be negative, by time and presence of a rate.
 _CHANGE = {
     ("continuous", False): "x' (A'P + PA) x",
     ("continuous", True): "x' (A'P + PA + 2 alpha P) x",
@@ -73,7 +73,7 @@ class LyapunovCheck(AbstractResult):
     # for if it holds, or else the best one on a fine grid, rounded to the side that is proved. None
     # if V does not decrease strictly at any rate, or if the numbers are too large to look for one.
     rate: Fraction | None
-    counterexample: Counterexample | None  # Why it does not hold
+    counterexample: Counterexample | None  # Reason for failure
     # modes, form, time, asked: what was decided about, and at which rate; None for any of decay.
     modes: tuple[Mode, ...]
     form: RationalMatrix
@@ -109,7 +109,7 @@ class LyapunovCheck(AbstractResult):
         return f"x' P x {'holds' if self.holds else 'does not hold'}{asked}"
 
     def lines(self) -> Iterator[str]:
-        """Yield what is decided, and why, in words."""
+        """Yield the decision and its reason in words."""
         from nrs_design.proof.evidence.fields import rate_words
 
         asked, law = self.asked is not None, _LAW[self.time]
@@ -267,7 +267,7 @@ def _counterexample(mode: Mode | None, form: fmpq_mat) -> Counterexample:
 
 
 def _shortened(vector: tuple[Fraction, ...], M: fmpq_mat) -> tuple[Fraction, ...]:
-    """Return a vector of few digits that shows the same, if there is one near the given."""
+    """Return a nearby vector of few digits with the same sign, else the given vector."""
     largest = max(map(abs, vector))
     for digits in DIGITS:
         unit = 10**digits

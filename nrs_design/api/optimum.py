@@ -1,4 +1,4 @@
-"""Gains that were designed, as floats with units, and what they achieve."""
+"""Designed gains as floats with units, and their margins."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
 
 
 def _sensor(designed: Designed) -> dict[str, Any]:
-    """Return what may last of the errors of the force signal, N m, rounded up."""
+    """Return the lasting error of the force signal, in N m, rounded up."""
     sensor = designed.design.sensor
     return {
         "lasting_error": upper_float(sensor.lasting),
@@ -191,7 +191,7 @@ def _sensor(designed: Designed) -> dict[str, Any]:
 
 
 def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
-    """Return the goals for frequency responses, and what is proved of them, in SI units."""
+    """Return the goals for frequency responses with their proved values, in SI units."""
     return [
         {
             "goal": found.key,
@@ -208,7 +208,7 @@ def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
 
 
 def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
-    """Return everything that was measured, with its goal if there is one, in SI units."""
+    """Return all measures with their goals, in SI units."""
     return [_goal(found) for found in item.judged]
 
 

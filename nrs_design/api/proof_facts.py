@@ -51,7 +51,7 @@ def certification_facts(result: Result, path: Path | None) -> Facts:
 
 
 def shown_facts(certificate: Certificate, spec: Spec) -> Facts:
-    """Return those facts of a decision that its certificate shows by itself."""
+    """Return the facts of a decision that follow from its certificate."""
     return {
         **_stated(certificate, certificate, spec),
         **_proved_rate(certificate),
@@ -123,7 +123,7 @@ def radius_facts(radius: RadiusBounds | None) -> Facts:
 
 
 def margins_facts(margins: ProofMargins) -> Facts:
-    """Return the facts of the margins that were asked for."""
+    """Return the facts of the requested margins."""
     content: Facts = {}
     if (box := margins.box) is not None:
         content["margin"] = {
@@ -174,7 +174,7 @@ def loop_facts(margins: MarginBrackets) -> Facts:
 
 
 def blocked_facts(blocked: Blocked, spec: Path) -> Facts:
-    """Return the facts of what keeps a spec from being proved."""
+    """Return the facts of the lines that prevent a proof."""
     return {
         "blocked_by": [
             {

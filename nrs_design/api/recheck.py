@@ -22,17 +22,17 @@ class Recheck(AbstractResult):
     """What a re-check says of a certificate."""
 
     file: Path  # The certificate
-    spec: Path | None  # What it was held against
+    spec: Path | None  # Spec of the comparison
     outcome: Verification
 
     @property
     def fault(self) -> str | None:
-        """Why the certificate is rejected; None if it is valid."""
+        """Reason for rejection; None for a valid certificate."""
         return self.outcome.fault
 
     @property
     def certificate(self) -> Certificate | None:
-        """What the file holds; a proof or a refutation if it is valid."""
+        """Certificate in the file; a proof or a refutation if valid."""
         return self.outcome.certificate
 
     @property
@@ -43,7 +43,7 @@ class Recheck(AbstractResult):
 
     @property
     def claims(self) -> tuple[str, ...]:
-        """What is shown, in words; empty if it is rejected."""
+        """Claims in words; empty for a rejected certificate."""
         kept = self._valid()
         return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.simulation.time_response import Signal, TimeResponse
 
-# What is shown of a run: the name of a metric, and the unit on an axis that turns.
+# Metrics in the table of a run, with the units on a rotary axis.
 _SHOWN = (
     ("peak_torque", "N*m"),
     ("peak_velocity", "rad/s"),
@@ -37,7 +37,7 @@ class ScenarioRun(AbstractResult):
 
     designed: Designed  # The spec and its gains
     simulated: Simulated
-    # bounds, rate: what is certified beside the run
+    # bounds, rate: certified bounds and decay rate
     bounds: tuple[CertifiedBound, ...] = ()
     rate: CertifiedRate | None = None
 
@@ -53,7 +53,7 @@ class ScenarioRun(AbstractResult):
 
     @property
     def run(self) -> Run:
-        """How the engine ran it: its steps, switches and contacts, and why it stopped."""
+        """Run of the engine: steps, switches, contacts and the reason of a stop."""
         return self.simulated.run
 
     @property

@@ -261,7 +261,7 @@ def _method(name: str) -> Method:
 def _limits(
     spec: Spec, budget: float | None, max_degree: int | None, gradient: Gradient | None
 ) -> Limits:
-    """Return how far the search goes: as the spec says, where nothing else is said."""
+    """Return the limits of the search: options, else those of the spec."""
     from nrs_design.spec.certification import HIGHEST_DEGREE
 
     if budget is not None and not 0 < budget < math.inf:

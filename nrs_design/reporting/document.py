@@ -42,9 +42,9 @@ class State(StrEnum):
 class Light:
     """Status of one topic at the top of the page."""
 
-    name: str  # What it is about, such as ``Proof``
-    state: State  # Which colour and sign it has
-    text: str  # The same in words
+    name: str  # Topic, such as ``Proof``
+    state: State  # Colour and sign
+    text: str  # State in words
     section: str = ""  # Title of the section that says more; empty for none
 
 
@@ -77,7 +77,7 @@ class Table:
 
     title: str  # Caption above the table
     columns: tuple[str, ...]  # Headings, with units
-    # Cells; one that is `Linked` leads to its line of the spec.
+    # Cells; a `Linked` cell leads to its line of the spec.
     rows: tuple[tuple[str, ...], ...]
 
 
@@ -87,7 +87,7 @@ class Illustration:
 
     name: str  # Unique in the report; letters, digits and hyphens, so that it can be a file name
     title: str  # Heading above the figure
-    caption: str  # What is seen, and what it does not show
+    caption: str  # Content of the figure, and its limits
     figure: Figure  # Drawn, but not yet in a file format
 
 
@@ -101,7 +101,7 @@ class Section:
     title: str
     blocks: tuple[Block, ...]
     boxed: bool = False
-    folded: bool = False  # Whether a page shows its title only, until a reader opens it
+    folded: bool = False  # Only the title is shown until a reader opens the section
 
     @property
     def illustrations(self) -> list[Illustration]:
@@ -116,9 +116,9 @@ class Report:
     # name, title: of the spec; the title may be empty.
     name: str
     title: str
-    verdict: str  # Of the certification, of a run or a robot, or that this is an identification
-    claim: str  # What the certificate states about stability, or that nothing is known
-    # What else is shown, such as that no common quadratic function exists.
+    verdict: str  # Verdict of the certification, of a run or of a robot, or ``identification``
+    claim: str  # Claim of the certificate about stability, or ``NO_CLAIM``
+    # Other claims, such as that no common quadratic function exists.
     remarks: tuple[str, ...]
     # Label and value: hashes, versions, rates; values may have links.
     facts: tuple[tuple[str, str], ...]
@@ -133,16 +133,15 @@ class Report:
     summary: tuple[str, ...] = ()
     lights: tuple[Light, ...] = ()  # Below the sentences
     key: tuple[tuple[str, str], ...] = ()  # Label and value of what a reader wants to know first
-    lead: str = ""  # Name of the figure that a page shows beside them, or empty
+    lead: str = ""  # Name of the figure beside the key facts, or empty
     # The text of the certificate that its id is the hash of, which a page can check; or empty.
     certificate: str = ""
-    # As the reader gave it. Without one the report has no date, and the same spec gives the same
-    # report on any day.
+    # Date of the reader. Without a date, the same spec gives the same report on any day.
     date: datetime.date | None = None
 
     @property
     def listed(self) -> int:
-        """How many lines of a spec the report holds; links to others would lead nowhere."""
+        """Number of lines of the spec in the report; other lines have no links."""
         blocks = (block for section in self.sections for block in section.blocks)
         return max((len(block.lines) for block in blocks if isinstance(block, Listing)), default=0)
 

@@ -99,7 +99,7 @@ def _structure(blocks: list[SwitchedSystem], offer: Offer, page_of: PageOf) -> S
 
 
 def _run(system: SwitchedSystem, rate: float) -> Section:
-    """Draw a run of the whole family, beside the rate of its slowest block."""
+    """Draw a run of the family with the slope of the slowest block."""
     identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))
     norm, initial = quadratic_norm(identity), worst_direction(played, identity)
     greedy = Greedy(system, played, norm, initial, rate)

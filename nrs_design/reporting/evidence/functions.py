@@ -112,7 +112,7 @@ class _Functions:
 
     @property
     def name(self) -> str:
-        """Degree of the functions, and what there is one for."""
+        """Degree and scope of the functions."""
         degree = 2 * self._form.degree
         text = "quadratic function" if degree == 2 else f"polynomial of degree {degree}"
         if self.system.clock is not None:
@@ -125,7 +125,7 @@ class _Functions:
 
     @property
     def meaning(self) -> tuple[str, ...]:
-        """Say what decreases, what the bound means and rests on, and how it was decided."""
+        """State function, bound, assumptions and decision."""
         system = self.system
         said = list(words.function(system, lost=self._lost, each=len(self._touching) > 1))
         if self._ruled:
@@ -137,7 +137,7 @@ class _Functions:
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """Name signals that break the rules, and what would move the point of rest."""
+        """Name inadmissible signals and inputs that move the equilibrium."""
         outside = words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
         return (*outside, *words.function_limits(self.system, lost=self._lost))
 
@@ -194,7 +194,7 @@ class _Functions:
         return rate
 
     def _text(self) -> str:
-        """Say what the certificate holds, and how large the constant in another norm is."""
+        """State the content of the certificate and the constant in the Euclidean norm."""
         forms, touching = self.offer.forms, self._touching
         each = "mode" if self.system.clock is None else _turn(self.system.clock)
         text = "The certificate holds one function for all modes"

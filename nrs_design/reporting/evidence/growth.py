@@ -116,7 +116,7 @@ def growth_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer
 
 
 def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
-    """Return the page of what happens at one value of the constant parameters."""
+    """Return the page of instability at one value of the constant parameters."""
     ((_, part),) = offer.parts
     page = growth_page(system_at(system, offer.shares), part, offer_of(part))
     run = page.run

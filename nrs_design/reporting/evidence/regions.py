@@ -47,7 +47,7 @@ def bound_page(system: SwitchedSystem, evidence: AbstractEvidence, _: Offer) -> 
 
 
 def _bound_section(system: SwitchedSystem, bound: Bound) -> Section:
-    """Show the level beside the disturbances and the limit of the spec."""
+    """Show the level, the disturbances and the limit of the spec."""
     output, unit = bound.output, bound.output.unit
     rows = [
         ("Disturbance", f"|{item.name}| <= {rounded_down(item.bound, item.unit)}")
@@ -95,7 +95,7 @@ def _saturation_section(
     assert rate is not None
     start = saturation.start
     name, unit = start.name.capitalize(), start.unit
-    # Of a lower limit nothing is claimed.
+    # The claim holds for this limit and higher ones, so round up.
     rows = [(f"Limit of the {s.name}", rounded_up(s.limit, s.unit)) for s in saturation.signals]
     rows.append((f"{name} at rest, proved", rounded_down(level, unit)))
     if start.wanted is not None:

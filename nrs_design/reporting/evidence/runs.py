@@ -1,4 +1,4 @@
-"""Adversarial runs: below a proved bound, beside a proved rate, or without either."""
+"""Adversarial runs with a proved bound, with a proved rate, or without a proof."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from nrs_design.simulation.switched import SwitchedRun, alone, fine_step, worst_
 
 Bound = tuple[str, Array]
 
-# The bound falls by e^7, three decades, where that takes no more steps than are drawn.
+# A run lasts until the bound has fallen by e^7, three decades, or has _STEPS steps.
 _DECAY = 7.0
 _STEPS = 4000
 _FEWEST = 500
-# Below this fraction of the start the run is cut: the rest would squeeze the bound flat.
+# A run ends below this fraction of the start: a longer axis would flatten the bound.
 _SMALL = 1e-6
-# Modes times squared states that a run of so many steps can try in about a second.
+# Modes times squared states that a run evaluates in about a second.
 _EFFORT = 200_000
 _UNKNOWN_STEPS = 600
 # A run that keeps rules tries every allowed switch at every step.
@@ -76,7 +76,7 @@ class Greedy:
 
     system: SwitchedSystem  # All modes, for the caption
     played: SwitchedSystem  # Modes that take part; without `contact` where it is kept
-    norms: Norm | Sequence[Norm]  # One, or one for each state of a clock or each mode
+    norms: Norm | Sequence[Norm]  # A norm, or a norm for each clock state or mode
     initial: Array  # Shape (n,)
     rate: float | None = None  # Sets the length of the run; None for a fixed length
 
@@ -133,7 +133,7 @@ def ruled_run(
     *,
     leaving: bool = False,
 ) -> Section:
-    """Draw a run that keeps the declared rules: below its bound, beside its slope, or without.
+    """Draw a run that obeys the declared rules, with its bound or slope if proved.
 
     In the norms of the forms if each mode has a quadratic one, else in the Euclidean. `leaving`:
     some modes must be left, in which a form may grow.
@@ -163,7 +163,7 @@ def ruled_run(
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
-    """Draw an adversarial run of a system about which nothing is proved."""
+    """Draw an adversarial run of a system without a proof."""
     if system.clock is None and not system.switching.is_arbitrary:
         return ruled_run(system)
     identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))

@@ -94,8 +94,8 @@ def _structure(blocks: list[SwitchedSystem], offer: Offer, page_of: PageOf) -> S
     unit = "rho per step [1]" if discrete else "alpha [1/s]"
     columns = ("Block", "States", "Evidence", f"Proved {unit}")
     table = Table(f"The {len(blocks)} diagonal blocks{some}", columns, tuple(rows))
-    shown = (Paragraph(_STRUCTURE), table, Bullets("Evidence of the blocks", claims))
-    return Section("Block triangular structure", shown)
+    blocks_shown = (Paragraph(_STRUCTURE), table, Bullets("Evidence of the blocks", claims))
+    return Section("Block triangular structure", blocks_shown)
 
 
 def _run(system: SwitchedSystem, rate: float) -> Section:

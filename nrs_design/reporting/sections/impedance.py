@@ -212,8 +212,8 @@ def _draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
         label = f"{item.name}, Ms = {worst.measure.text(peak)}"
         axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
         if math.isfinite(at) and math.isfinite(peak):
-            look = {"color": color(index), "markeredgecolor": INK, "markersize": 8}
-            axes.plot(at, peak, marker(index), **look)
+            shape, tint = marker(index), color(index)
+            axes.plot(at, peak, shape, color=tint, markeredgecolor=INK, markersize=8)
     axes.axhline(1.0, color=MUTED, linewidth=1.0)
     _finish(axes, items, "Sensitivity magnitude [1]")
     legend(figure, axes)

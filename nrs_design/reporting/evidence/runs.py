@@ -86,7 +86,7 @@ class Greedy:
         `line` says which line has the rate, such as ``proved bound, ``; empty for none.
         """
         system, rate, norms = all_modes(self.played), self.rate, self.norms
-        step, steps = horizon(self.played, rate)
+        step, steps = horizon(system, rate)
         response = greedy_run(self.played, norms, self.initial, step, steps)
         if rate:
             response = until_small(response, relative_norms(response, norms))

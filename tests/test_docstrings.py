@@ -96,7 +96,7 @@ def test_whoever_describes_parameters_describes_them_all_and_no_others():
         for name, thing in everything()
         if (known := parameters(thing)) is not None and described(thing)
     }
-    assert len(told) > 10
+    assert len(told) > 6
     assert {n: named - known for n, (named, known, _) in told.items() if named - known} == {}
     wanted = {n: known - named for n, (named, known, is_function) in told.items() if is_function}
     assert {name: names for name, names in wanted.items() if names} == {}

@@ -228,7 +228,7 @@ def test_tests_use_what_is_public():
     assert not private
 
 
-@pytest.mark.parametrize("above", ["cli", "gating", "facts", "exporters"])
+@pytest.mark.parametrize("above", ["cli", "gating", "exporters"])
 def test_stages_are_known_to_the_pipeline_only(above):
     """A command asks the pipeline; it takes types of a stage, to print them.
 

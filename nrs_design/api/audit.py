@@ -1,4 +1,4 @@
-"""How a run of the robot stands to what was proved, as the library gives it."""
+"""Comparison of a robot run with the proof, as a result of the library."""
 
 from __future__ import annotations
 
@@ -19,45 +19,27 @@ class AuditCheck:
     name: str  # What is judged
     # ``inside``, ``outside``, ``undecided``, ``estimated``, ``not judged``, ``not modelled``
     status: str
-    measured: str  # What the log shows; for what is not judged, why
+    measured: str  # Measured value; without a judgement, the reason
     allowed: str = ""  # The bound
     basis: str = ""  # Where the bound comes from
-    time: float | None = None  # When it was first left, in s
+    time: float | None = None  # Time of the first violation, in s
     violation: str = ""  # What happened then
 
 
 @dataclass(frozen=True, repr=False)
 class Audit(AbstractResult):
-    """Whether a run stayed inside what was proved.
+    """Whether a run stayed inside what was proved."""
 
-    Parameters
-    ----------
-    name : str
-        Of the spec.
-    verdict : {"inside", "outside", "inconclusive"}
-        Inside only if all was judged and the spec is proved.
-    unproved_because : str
-        Why the spec is not proved, so that its ranges are only declared; empty if it is.
-    checks : tuple of AuditCheck
-        One for each bound.
-    first : AuditCheck or None
-        That which was left first.
-    synthetic : bool
-        Whether a simulation made the log.
-    facts : mapping
-        What the command prints by ``--json``.
-    page : callable
-        Draws its page.
-    """
-
-    name: str
-    verdict: str
-    unproved_because: str
-    checks: tuple[AuditCheck, ...]
-    first: AuditCheck | None
-    synthetic: bool
-    facts: Mapping[str, Any]
-    page: Callable[[], Report]
+    name: str  # Name of the spec
+    verdict: (
+        str  # ``inside`` if all was judged and the spec is proved; ``outside``, ``inconclusive``
+    )
+    unproved_because: str  # Reason why the spec is not proved: its ranges are only declared
+    checks: tuple[AuditCheck, ...]  # One for each bound
+    first: AuditCheck | None  # The bound that was left first
+    synthetic: bool  # Whether a simulation made the log
+    facts: Mapping[str, Any]  # Content of ``--json``
+    page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)

@@ -9,10 +9,10 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.api.proof_facts import blocked_facts, certification_facts, margins_facts
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.errors import OutputError, SpecError
-from nrs_design.facts.certification import certification_facts
 from nrs_design.output import PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, write_certificate
 from nrs_design.pipeline.certification import Result
@@ -25,21 +25,55 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.proof.evidence import AbstractEvidence
     from nrs_design.reporting import Report
 
 
+@dataclass(frozen=True, slots=True)
+class Further:
+    """Margins and remedies, which a command searches after the verdict."""
+
+    margins: ProofMargins
+    blocked: Blocked | None
+    relief: tuple[str, ...]
+    steps: tuple[str, ...]
+
+    def facts(self, spec: Path) -> dict[str, Any]:
+        """Return the content of ``--json``."""
+        return (
+            margins_facts(self.margins)
+            | {"relief": list(self.relief), "next_steps": list(self.steps)}
+            | ({} if self.blocked is None else blocked_facts(self.blocked, spec))
+        )
+
+    def lines(self, loaded: LoadedSpec, *, verbose: bool) -> Iterator[str]:
+        """Yield the findings in words; verbose: all details and remedies."""
+        # A proved change of the spec is a better remedy than the others.
+        is_helped = self.blocked is not None and bool(self.blocked.proved)
+        if verbose or not is_helped:
+            yield from (f"  {line}" for line in self.relief)
+        margins = self.margins
+        if any((margins.loop, margins.box, margins.dwell)):
+            from nrs_design.reporting.remedies import margin_lines
+
+            yield from (f"  {line}" for line in margin_lines(margins))
+        if self.blocked is not None:
+            from nrs_design.pipeline.blocked import blocked_lines
+
+            yield from (f"  {line}" for line in blocked_lines(self.blocked, loaded.path))
+        some = None if verbose else 0 if is_helped or self.relief else 1
+        yield from (f"next: {line}" for line in self.steps[:some])
+
+
 @dataclass(frozen=True, repr=False)
 class Decision(AbstractResult):
-    """A verdict on stability under switching, with all that carries it.
+    """A verdict on stability under switching, with all that carries it."""
 
-    Parameters
-    ----------
-    result : nrs_design.pipeline.certification.Result
-        The spec with its design, its exact modes, every attempt and the certificate.
-    """
-
-    result: Result
+    result: Result  # The spec with its design, exact modes, every attempt and the certificate
+    file: Path | None = None  # Path of the written certificate
+    further: Further | None = None  # Margins and remedies
 
     @property
     def verdict(self) -> str:
@@ -48,11 +82,7 @@ class Decision(AbstractResult):
 
     @property
     def refuted_in(self) -> str | None:
-        """In which contact alone it is refuted, ``in kept contact``; None where that is decisive.
-
-        Where contact may be lost, growth for which the environment would have to pull leaves the
-        verdict ``inconclusive``.
-        """
+        """Contact in which alone the loop is refuted: ``in kept contact``, or None."""
         return self.result.certification.refuted_in
 
     @property
@@ -73,23 +103,23 @@ class Decision(AbstractResult):
 
     @property
     def claim(self) -> str:
-        """What is claimed about stability, in words."""
+        """Claim about stability, in words."""
         from nrs_design.reporting.sections.head import claim_of
 
         return claim_of(self.result.certification)
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """What the claim takes for granted."""
+        """Assumptions of the claim."""
         return sentences(self.result.certification.granted)
 
     @property
     def attempts(self) -> tuple[Attempt, ...]:
-        """Every step of the search: what was tried, how it ended, and its time in s."""
+        """Every search step with its outcome and its time in s."""
         return self.result.certification.attempts
 
     def why(self) -> tuple[str, ...]:
-        """Return which lines of the spec keep it from being proved; empty unless inconclusive.
+        """Return the lines of the spec that prevent a proof; empty unless inconclusive.
 
         Single lines are changed, and the spec is certified again each time: that takes up to half
         of the budget of the spec. `nrs_design.pipeline.blocked.find_blocked` has all that is found.
@@ -127,10 +157,33 @@ class Decision(AbstractResult):
         return getattr(self.result.loaded.spec, "axis", None)
 
     def _facts(self) -> dict[str, Any]:
-        return certification_facts(self.result, None)
+        facts = certification_facts(self.result, self.file)
+        path = self.result.loaded.path
+        return facts if self.further is None else facts | self.further.facts(path)
+
+    def lines(self, *, verbose: bool = False) -> Iterator[str]:
+        """Yield verdict, claims and goals in words; verbose: full claims and all attempts."""
+        from nrs_design.certificates.goals import certified_goals
+
+        found, result = self.result.certification, self.result
+        open_ = "" if found.evidence is not None else ": no proof, and no signal that grows"
+        if self.refuted_in is not None:
+            open_ = f" (refuted {self.refuted_in}; open where contact may be lost)"
+        yield f"{result.loaded.spec.name}: {self.verdict.upper()}{open_}"
+        for statement, short in result.briefs:
+            yield f"  {statement.claim(found.system) if verbose else short}"
+        for attempt in self.attempts:
+            # A bound that was wanted and not found must be visible.
+            is_wanted = attempt.step.startswith(("bound on ", "decay under"))
+            if verbose or (is_wanted and attempt.outcome != "found"):
+                # Steps that were skipped took no time.
+                took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
+                yield f"  {attempt.step}: {attempt.outcome}{took if attempt.seconds else ''}"
+        for goal in certified_goals(result.loaded.spec, result.certificate):
+            yield f"  {goal.line}"
 
     def _drawings(self) -> Figures:
-        # The run beside its bound says most; those of the design take longer.
+        # The run with its bound comes first; figures of the design take longer.
         seen = set()
         for name, draw in evidence_drawings(self.result.certification):
             seen.add(name)
@@ -147,13 +200,7 @@ class Decision(AbstractResult):
         yield "taken for granted", counted(len(self.assumptions), "thing")
 
     def report(self, file: str | Path | None = None) -> str:
-        """Return the report as one HTML page, and write it if a file is named.
-
-        Raises
-        ------
-        OutputError
-            If the file cannot be written, or its name is that of something else.
-        """
+        """Return the report as one HTML page, and write it if a file is named."""
         from nrs_design.reporting import render_html
 
         if file is not None:
@@ -164,18 +211,10 @@ class Decision(AbstractResult):
         return page
 
     def save(self, folder: str | Path) -> Path:
-        """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
+        """Write ``NAME.cert.json``, and the spec if no file has the same content.
 
-        Returns
-        -------
-        Path
-            The certificate, which `nrs_design.verify` checks against the spec.
-
-        Raises
-        ------
-        OutputError
-            If nothing was shown, so that there is no certificate, or a file cannot be written, or
-            another spec stands in its place; or if a file is named, not a folder.
+        Return the certificate, which `nrs_design.verify` checks against the spec. An OutputError if
+        nothing was shown, so that there is no certificate, or another spec stands in its place.
         """
         place, loaded = Path(folder), self.result.loaded
         if place.suffix == ".json":

@@ -24,22 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Exported(AbstractResult):
-    """The gains that ship with their proof, or why there are none.
-
-    Parameters
-    ----------
-    loaded : nrs_design.spec.LoadedSpec
-        The spec.
-    export : nrs_design.exporters.export.Export
-        What may be exported.
-    """
+    """Exported gains with their proof, or the reason for none."""
 
     loaded: LoadedSpec
-    export: Export
+    export: Export  # What may be exported
 
     @property
     def name(self) -> str:
-        """Of the spec."""
+        """Name of the spec."""
         return self.loaded.spec.name
 
     @property
@@ -54,7 +46,7 @@ class Exported(AbstractResult):
 
     @property
     def record(self) -> ExportRecord | None:
-        """What is exported: gains, exactly and as float32, and what is proved of them."""
+        """Exported gains, exactly and as float32, with their proof."""
         return self.export.record
 
     @property
@@ -63,29 +55,11 @@ class Exported(AbstractResult):
         return self.export.certificate
 
     def save(self, folder: str | Path, format: str = "json") -> tuple[Path, ...]:
-        """Write the files of a format, and the certificate beside them first.
+        """Write the certificate and the files of a format.
 
-        Parameters
-        ----------
-        folder : path-like
-            For the files.
-        format : str
-            As `nrs-design export --list` names it.
-
-        Returns
-        -------
-        tuple of Path
-            The files of the format; ``NAME.cert.json`` is beside them.
-
-        Raises
-        ------
-        DesignError
-            If nothing may be exported, or a processor is to run what is proved in continuous time
-            only.
-        NrsDesignError
-            If there is no such format.
-        OutputError
-            If a file cannot be written, or another stands in its place.
+        The format is as `nrs-design export --list` names it. Files of the format are returned;
+        ``NAME.cert.json`` is beside them. A DesignError if nothing may be exported, or a processor
+        is to run what is proved in continuous time only.
         """
         chosen, place, record = known_format(format), Path(folder), self.export.shipped()
         if chosen.executable and record.sample_time is None:

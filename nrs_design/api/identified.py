@@ -1,4 +1,4 @@
-"""What records say about a tissue, an actuator or a delay, as the library gives it."""
+"""Identified tissue, actuator or delay, as a result of the library."""
 
 from __future__ import annotations
 
@@ -39,42 +39,19 @@ class FittedRange:
 
 @dataclass(frozen=True, repr=False)
 class Identification(AbstractResult):
-    """What records say: an estimate, not a proof.
+    """What records say: an estimate, not a proof."""
 
-    Parameters
-    ----------
-    kind : str
-        What they are records of.
-    chosen : str
-        Which law or method was chosen.
-    reason : str
-        Why that one, or what it is about.
-    ranges : mapping of str to FittedRange
-        The numbers, at 95 %: of what covers more, `facts` says it.
-    files : tuple of Path
-        The records.
-    synthetic : bool
-        Whether a simulation made some of them.
-    remarks, doubts, caveats : tuple of str
-        What the numbers rest on, what speaks against them, and what a proof that uses them must
-        know.
-    facts : mapping
-        What the command prints by ``--json``.
-    page : callable
-        Draws its page.
-    """
-
-    kind: str
-    chosen: str
-    reason: str
-    ranges: Mapping[str, FittedRange]
-    files: tuple[Path, ...]
-    synthetic: bool
-    remarks: tuple[str, ...]
-    doubts: tuple[str, ...]
-    caveats: tuple[str, ...]
-    facts: Mapping[str, Any]
-    page: Callable[[], Report]
+    kind: str  # Kind of the records
+    chosen: str  # Which law or method was chosen
+    reason: str  # Reason of the choice, or its subject
+    ranges: Mapping[str, FittedRange]  # The numbers, at 95 %: `facts` says of what covers more
+    files: tuple[Path, ...]  # The records
+    synthetic: bool  # Some records come from a simulation
+    remarks: tuple[str, ...]  # Assumptions of the numbers
+    doubts: tuple[str, ...]  # Reasons against the numbers
+    caveats: tuple[str, ...]  # Conditions for a proof that uses the numbers
+    facts: Mapping[str, Any]  # Content of ``--json``
+    page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
@@ -110,18 +87,13 @@ def identify(
     records : path-like, mapping of str to array, DataFrame, or iterable of these
         CSV files, or columns by name; see `nrs-design identify` for the names. Of a delay, one.
     kind : {"tissue", "actuator", "delay"}
-        What they are records of. Resistance and torque of an actuator are said for the motor of
+        Kind of the records. Resistance and torque of an actuator are said for the motor of
         thesis table 4.1; gain, time constant, friction and dead time depend on no data sheet.
     law : str, optional
         Of the tissue; by default the one that the records speak for.
     columns : mapping of str to str, optional
         Foreign names of columns, as in ``{"force_N": "Fz"}``; of a delay, which columns are its
         ``command`` and what was ``measured``.
-
-    Raises
-    ------
-    DataError
-        If a file is no such record, or there is no such kind, law or column.
 
     Examples
     --------

@@ -11,24 +11,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd
 from typing import TYPE_CHECKING, Any
+
+from flint import fmpq, fmpq_mat
 
 from nrs_design.api.result import AbstractResult
 from nrs_design.proof.exact import (
     MAX_WORK,
-    IntegerMatrix,
     TooLargeError,
-    add,
     bit_length,
-    congruence,
     is_positive_definite,
     is_positive_semidefinite,
-    scaled,
-    transpose,
 )
-from nrs_design.proof.exact import multiply as product
-from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 
 if TYPE_CHECKING:
@@ -44,7 +39,7 @@ DIGITS = (1, 2, 4, 8, 16)
 # A longer number is written rounded in words.
 LONGEST = 60
 _LAW = {"continuous": "x' = A x", "discrete": "x+ = A x"}
-# What must be negative, by time and whether a rate is asked for.
+# Form that must be negative, by time and presence of a rate.
 _CHANGE = {
     ("continuous", False): "x' (A'P + PA) x",
     ("continuous", True): "x' (A'P + PA + 2 alpha P) x",
@@ -78,7 +73,7 @@ class LyapunovCheck(AbstractResult):
     # for if it holds, or else the best one on a fine grid, rounded to the side that is proved. None
     # if V does not decrease strictly at any rate, or if the numbers are too large to look for one.
     rate: Fraction | None
-    counterexample: Counterexample | None  # Why it does not hold
+    counterexample: Counterexample | None  # Reason for failure
     # modes, form, time, asked: what was decided about, and at which rate; None for any of decay.
     modes: tuple[Mode, ...]
     form: RationalMatrix
@@ -114,7 +109,7 @@ class LyapunovCheck(AbstractResult):
         return f"x' P x {'holds' if self.holds else 'does not hold'}{asked}"
 
     def lines(self) -> Iterator[str]:
-        """Yield what is decided, and why, in words."""
+        """Yield the decision and its reason in words."""
         from nrs_design.proof.evidence.fields import rate_words
 
         asked, law = self.asked is not None, _LAW[self.time]
@@ -176,13 +171,13 @@ def check_quadratic(
         raise TooLargeError("the matrices are too large, or their numbers too long, to decide")
     affordable = DECISIONS * work <= 4 * MAX_WORK
     for mode, form in _forms(modes, P, time, asked):
-        if not is_positive_definite(form):
-            first, *others = (M for _, M in _forms(modes, P, time, still))
+        if not is_positive_definite(_integers(form)):
+            first, *others = (_integers(M) for _, M in _forms(modes, P, time, still))
             positive = is_positive_definite(first)
             weak = positive and all(map(is_positive_semidefinite, others))
             decays = positive and all(map(is_positive_definite, others))
             best = _best_rate(modes, P, time) if affordable and decays else None
-            failing = _counterexample(mode, form, P, asked, time)
+            failing = _counterexample(mode, form)
             return LyapunovCheck(False, weak, best, failing, tuple(modes), P, time, rate)
     best = _best_rate(modes, P, time) if rate is None and affordable else rate
     return LyapunovCheck(True, True, best, None, tuple(modes), P, time, rate)
@@ -202,43 +197,32 @@ def _work(modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction) 
 
 def _forms(
     modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction
-) -> Iterator[tuple[Mode | None, IntegerMatrix]]:
+) -> Iterator[tuple[Mode | None, fmpq_mat]]:
     """Yield P, and the decrease in every mode: what must be positive definite."""
-    yield None, P.numerators
-    form = lyapunov_decrease if time is Time.CONTINUOUS else stein_decrease
+    form = _rational(P)
+    yield None, form
     for mode in modes:
-        yield mode, form(mode.A.numerators, mode.A.denominator, P.numerators, rate)
+        yield mode, decrease(_rational(mode.A), form, rate, time)
 
 
-def lyapunov_decrease(
-    N: IntegerMatrix,
-    denominator: int,
-    Q: IntegerMatrix,
-    rate: Fraction,
-) -> list[list[int]]:
-    """Form ``-(A'Q + QA + 2 rate Q)`` for ``A = N / denominator``, times a positive integer.
-
-    Q is symmetric, the denominator positive, the rate in 1/s.
-    """
-    QN = product(Q, N)
-    p, q = 2 * rate.numerator * denominator, rate.denominator
-    common = gcd(p, q)
-    p, q = p // common, q // common
-    return [
-        [-q * (a + b) - p * entry for a, b, entry in zip(*rows, strict=True)]
-        for rows in zip(QN, transpose(QN), Q, strict=True)
-    ]
+def decrease(A: fmpq_mat, P: fmpq_mat, rate: Fraction, time: Time) -> fmpq_mat:
+    """Return ``-(A'P + PA + 2 rate P)``, or ``rate^2 P - A'PA`` per step; P is symmetric."""
+    factor = fmpq(rate.numerator, rate.denominator)
+    if time is Time.CONTINUOUS:
+        half = -(P * A) - P * factor
+        return half + half.transpose()
+    return P * (factor * factor) - A.transpose() * P * A
 
 
-def stein_decrease(
-    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
-) -> list[list[int]]:
-    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.
+def _rational(M: RationalMatrix) -> fmpq_mat:
+    columns = len(M.numerators[0])
+    flat = [fmpq(entry, M.denominator) for row in M.numerators for entry in row]
+    return fmpq_mat(len(M.numerators), columns, flat)
 
-    Q is symmetric, the denominator positive, the factor the contraction rho per step.
-    """
-    p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
-    return add(scaled(Q, p), congruence(N, Q), -q)
+
+def _integers(M: fmpq_mat) -> list[list[int]]:
+    """Return a matrix times the positive common denominator of its entries."""
+    return [[int(entry) for entry in row] for row in M.numer_denom()[0].table()]
 
 
 def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction:
@@ -252,7 +236,7 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
 
     def is_proved(decay: Fraction) -> bool:
         forms = _forms(modes, P, time, rate_at(decay))
-        return all(is_positive_definite(form) for _, form in forms)
+        return all(is_positive_definite(_integers(form)) for _, form in forms)
 
     low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
     while not is_proved(low):
@@ -269,78 +253,59 @@ def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
 
     All are below ``-x'PAx / x'Px`` at one x, here the first unit vector.
     """
-    Q, A = P.numerators, modes[0].A
-    first = sum(Q[0][k] * A.numerators[k][0] for k in range(len(Q)))
-    bound = Fraction(first, Q[0][0] * A.denominator)
+    form = _rational(P)
+    bound = _fraction((form * _rational(modes[0].A))[0, 0] / form[0, 0])
     return Fraction(2) ** (bound.numerator.bit_length() - bound.denominator.bit_length())
 
 
-def _counterexample(
-    mode: Mode | None, form: IntegerMatrix, P: RationalMatrix, rate: Fraction, time: Time
-) -> Counterexample:
+def _counterexample(mode: Mode | None, form: fmpq_mat) -> Counterexample:
+    """Return a vector at which a form is not positive, and the value of the condition there."""
     vector = _shortened(indefinite_vector(form), form)
-    rows = P.fractions()
-    if mode is None:
-        return Counterexample(None, vector, _value(rows, vector, vector))
-    Ax = [entry for (entry,) in multiply(mode.A.fractions(), [[entry] for entry in vector])]
-    if time is Time.CONTINUOUS:
-        value = 2 * _value(rows, vector, Ax) + 2 * rate * _value(rows, vector, vector)
-    else:
-        value = _value(rows, Ax, Ax) - rate**2 * _value(rows, vector, vector)
-    return Counterexample(mode.name, vector, value)
+    value = _value(form, vector)
+    name, value = (None, value) if mode is None else (mode.name, -value)
+    return Counterexample(name, vector, value)
 
 
-def _shortened(vector: tuple[Fraction, ...], M: IntegerMatrix) -> tuple[Fraction, ...]:
-    """Return a vector of few digits that shows the same, if there is one near the given."""
+def _shortened(vector: tuple[Fraction, ...], M: fmpq_mat) -> tuple[Fraction, ...]:
+    """Return a nearby vector of few digits with the same sign, else the given vector."""
     largest = max(map(abs, vector))
     for digits in DIGITS:
         unit = 10**digits
         short = tuple(Fraction(round(entry / largest * unit), unit) for entry in vector)
-        if _value(M, short, short) <= 0:
+        if _value(M, short) <= 0:
             return short
     return vector
 
 
-def _value(
-    rows: Sequence[Sequence[Fraction | int]], left: Sequence[Fraction], right: Sequence[Fraction]
-) -> Fraction:
-    """Return ``left' M right``."""
-    ((value,),) = multiply([left], multiply(rows, [[entry] for entry in right]))
-    return value
+def _value(M: fmpq_mat, vector: Sequence[Fraction]) -> Fraction:
+    """Return ``x' M x``."""
+    x = fmpq_mat(len(vector), 1, [fmpq(v.numerator, v.denominator) for v in vector])
+    return _fraction((x.transpose() * M * x)[0, 0])
 
 
-def indefinite_vector(M: IntegerMatrix) -> tuple[Fraction, ...]:
+def _fraction(number: fmpq) -> Fraction:
+    return Fraction(int(number.p), int(number.q))
+
+
+def indefinite_vector(M: fmpq_mat) -> tuple[Fraction, ...]:
     """Return a nonzero x with ``x' M x <= 0`` for a symmetric M that is not positive definite.
 
-    Elimination goes on until a pivot is not positive. With the block above and left of it called
-    B, and c the column beside that block, ``x = (-B^-1 c, 1, 0)`` gives that pivot as ``x' M x``
-    (here after fraction-free elimination, times the last positive minor). A ValueError if M is
-    positive definite.
+    With B the block above and left of an entry of the diagonal, and c the column above it,
+    ``x = (-B^-1 c, 1, 0)`` gives the pivot of elimination there as ``x' M x``. The first pivot that
+    is not positive is taken; blocks before it are positive definite. A ValueError if M is positive
+    definite.
     """
-    rows, minor = [list(row) for row in M], 1
-    for k in range(len(rows)):
-        pivot = rows[k][k]
-        if pivot <= 0:
-            return _solved(rows, k, minor)
-        for i in range(k + 1, len(rows)):
-            first = rows[i][k]
-            rows[i] = [
-                (pivot * a - first * b) // minor for a, b in zip(rows[i], rows[k], strict=True)
-            ]
-        minor = pivot
+    n = M.nrows()
+    for k in range(n):
+        head: list[fmpq] = []
+        if k:
+            block = fmpq_mat(k, k, [M[i, j] for i in range(k) for j in range(k)])
+            solution = block.solve(fmpq_mat(k, 1, [-M[i, k] for i in range(k)]))
+            head = [solution[i, 0] for i in range(k)]
+        vector = (*map(_fraction, head), Fraction(1), *[Fraction(0)] * (n - k - 1))
+        if _value(M, vector) <= 0:
+            return vector
     raise ValueError("the matrix is positive definite")
-
-
-def _solved(rows: IntegerMatrix, k: int, minor: int) -> tuple[Fraction, ...]:
-    """Solve ``U x = -c`` backwards, with the first k rows after elimination.
-
-    By Cramer's rule the solution times the leading minor of order k is integer.
-    """
-    x = [0] * len(rows)
-    x[k] = minor
-    for i in reversed(range(k)):
-        x[i] = -sum(rows[i][j] * x[j] for j in range(i + 1, k + 1)) // rows[i][i]
-    return tuple(Fraction(entry, minor) for entry in x)
 
 
 def _written(number: Fraction) -> str:

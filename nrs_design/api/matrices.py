@@ -70,11 +70,6 @@ def certify(
     Decision
         With verdict, decay rate, evidence, assumptions and attempts.
 
-    Raises
-    ------
-    SpecError
-        If the input is wrong.
-
     Examples
     --------
     >>> import nrs_design as nrs
@@ -120,11 +115,6 @@ def check_lyapunov(
     -------
     LyapunovCheck
         Strict, weak or neither; a proved rate; the failing mode with a vector that shows it.
-
-    Raises
-    ------
-    SpecError
-        If the input is wrong.
 
     Examples
     --------

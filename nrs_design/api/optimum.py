@@ -1,4 +1,4 @@
-"""Gains that were designed, as floats with units, and what they achieve."""
+"""Designed gains as floats with units, and their margins."""
 
 from __future__ import annotations
 
@@ -25,15 +25,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Optimum(AbstractResult):
-    """The design of a spec.
+    """The design of a spec."""
 
-    Parameters
-    ----------
-    designed : nrs_design.pipeline.design.Designed
-        The spec with its plant and gains.
-    """
-
-    designed: Designed
+    designed: Designed  # The spec with its plant and gains
 
     @property
     def gains(self) -> dict[str, dict[str, float]]:
@@ -186,7 +180,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
 
 
 def _sensor(designed: Designed) -> dict[str, Any]:
-    """Return what may last of the errors of the force signal, N m, rounded up."""
+    """Return the lasting error of the force signal, in N m, rounded up."""
     sensor = designed.design.sensor
     return {
         "lasting_error": upper_float(sensor.lasting),
@@ -196,7 +190,7 @@ def _sensor(designed: Designed) -> dict[str, Any]:
 
 
 def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
-    """Return everything that was measured, with its goal if there is one, in SI units."""
+    """Return all measures with their goals, in SI units."""
     return [_goal(found) for found in item.judged]
 
 

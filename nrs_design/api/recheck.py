@@ -19,30 +19,20 @@ from nrs_design.spec import read_spec
 
 @dataclass(frozen=True, repr=False)
 class Recheck(AbstractResult):
-    """What a re-check says of a certificate.
+    """What a re-check says of a certificate."""
 
-    Parameters
-    ----------
-    file : Path
-        The certificate.
-    spec : Path or None
-        That it was held against.
-    outcome : nrs_design.certificates.prove.Verification
-        Of the check.
-    """
-
-    file: Path
-    spec: Path | None
+    file: Path  # The certificate
+    spec: Path | None  # Spec of the comparison
     outcome: Verification
 
     @property
     def fault(self) -> str | None:
-        """Why the certificate is rejected; None if it is valid."""
+        """Reason for rejection; None for a valid certificate."""
         return self.outcome.fault
 
     @property
     def certificate(self) -> Certificate | None:
-        """What the file holds; a proof or a refutation if it is valid."""
+        """Certificate in the file; a proof or a refutation if valid."""
         return self.outcome.certificate
 
     @property
@@ -53,7 +43,7 @@ class Recheck(AbstractResult):
 
     @property
     def claims(self) -> tuple[str, ...]:
-        """What is shown, in words; empty if it is rejected."""
+        """Claims in words; empty for a rejected certificate."""
         kept = self._valid()
         return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
 
@@ -118,14 +108,9 @@ def verify(certificate: str | Path, spec: str | Path | None = None) -> Recheck:
     -------
     Recheck
         Its `fault` says why the certificate is rejected, None if it is valid. Its
-        `verdict` may be ``refuted``; true in a condition if it is a proof.
-
-    Raises
-    ------
-    SpecError, CertificateError
-        If a file cannot be read at all.
+        `verdict` may be ``refuted``; true in a condition if it is a proof. What cannot be read at
+        all raises a SpecError or CertificateError.
     """
-    file = Path(certificate)
-    if spec is None:
-        return Recheck(file, None, verify_file(file))
-    return Recheck(file, Path(spec), verify_file(file, read_spec(spec)))
+    file, against = Path(certificate), None if spec is None else Path(spec)
+    loaded = None if against is None else read_spec(against)
+    return Recheck(file, against, verify_file(file, loaded))

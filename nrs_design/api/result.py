@@ -1,4 +1,4 @@
-"""What every result of the library can do: be drawn, be shown in a notebook, be told as facts."""
+"""Common methods of the results: figures, notebook view, facts."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # Widths of one column and of both in papers of the IEEE, in.
 WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
 
-# Figures with their names, each drawn when it is asked for.
+# Names and functions that draw the figures.
 Figures = Iterable[tuple[str, Callable[[], "Figure"]]]
 
 
@@ -30,7 +30,7 @@ class AbstractResult(ABC):
 
     @abstractmethod
     def _facts(self) -> dict[str, Any]:
-        """Return what the command of this name prints by ``--json``, plain and in SI."""
+        """Return the content of ``--json`` of the command, plain and in SI."""
 
     def _drawings(self) -> Figures:
         """Yield the figures, that of most use first; by default none."""
@@ -38,7 +38,7 @@ class AbstractResult(ABC):
 
     @abstractmethod
     def _headline(self) -> str:
-        """Return what it is, in a line."""
+        """Return a summary in a line."""
 
     @abstractmethod
     def _rows(self) -> Iterable[Sequence[str]]:
@@ -70,11 +70,6 @@ class AbstractResult(ABC):
             Width of one or two columns of a paper of the IEEE, 3.5 or 7.16 in, with letters of
             8 pt. ``savefig`` writes it as PDF, SVG, PNG or, with XeLaTeX or LuaLaTeX, PGF. Where
             a publisher takes no Type 3 fonts, set ``matplotlib.rcParams["pdf.fonttype"] = 42``.
-
-        Raises
-        ------
-        DesignError
-            If there is no such figure or width; the message lists those that there are.
         """
         from nrs_design.reporting.style import for_paper
 
@@ -95,11 +90,11 @@ class AbstractResult(ABC):
             return list(self._rows())
 
     def __repr__(self) -> str:
-        """Say what it is, in a line."""
+        """Return type and summary in a line."""
         return f"<{type(self).__name__} {self._headline()}>"
 
     def __str__(self) -> str:
-        """Say what it is, and its rows."""
+        """Return the summary and the rows."""
         heads, *rows = self._table()
         lines = [f"{row[0]}: {', '.join(_named(heads, row))}" for row in rows]
         return "\n".join([self._headline(), *(f"  {line}" for line in lines)])
@@ -122,7 +117,7 @@ def drawn(sections: Iterable[Section], first: str = "") -> Figures:
 
 
 def evidence_drawings(certification: Certification) -> Figures:
-    """Return the figures of what was shown; a run beside its bound comes first."""
+    """Return the figures of the evidence; a run with its bound comes first."""
     from nrs_design.reporting.evidence import evidence_sections
 
     return drawn(evidence_sections(certification), "run")

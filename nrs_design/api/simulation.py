@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.simulation.time_response import Signal, TimeResponse
 
-# What is shown of a run: the name of a metric, and the unit on an axis that turns.
+# Metrics in the table of a run, with the units on a rotary axis.
 _SHOWN = (
     ("peak_torque", "N*m"),
     ("peak_velocity", "rad/s"),
@@ -33,26 +33,17 @@ _SHOWN = (
 
 @dataclass(frozen=True, repr=False)
 class ScenarioRun(AbstractResult):
-    """A scenario that has been simulated: it proves nothing.
+    """A scenario that has been simulated: it proves nothing."""
 
-    Parameters
-    ----------
-    designed : nrs_design.pipeline.design.Designed
-        The spec and its gains.
-    simulated : nrs_design.pipeline.scenarios.Simulated
-        The run.
-    bounds, rate
-        What is certified beside it.
-    """
-
-    designed: Designed
+    designed: Designed  # The spec and its gains
     simulated: Simulated
+    # bounds, rate: certified bounds and decay rate
     bounds: tuple[CertifiedBound, ...] = ()
     rate: CertifiedRate | None = None
 
     @property
     def name(self) -> str:
-        """Of the scenario."""
+        """Name of the scenario."""
         return self.simulated.scenario.name
 
     @property
@@ -62,12 +53,12 @@ class ScenarioRun(AbstractResult):
 
     @property
     def run(self) -> Run:
-        """How the engine ran it: its steps, switches and contacts, and why it stopped."""
+        """Run of the engine: steps, switches, contacts and the reason of a stop."""
         return self.simulated.run
 
     @property
     def metrics(self) -> Mapping[str, Any]:
-        """Of the run, in SI."""
+        """Metrics of the run, in SI."""
         return self.simulated.metrics
 
     @property
@@ -77,7 +68,7 @@ class ScenarioRun(AbstractResult):
 
     @property
     def time(self) -> NDArray[np.float64]:
-        """In s, shape (N,)."""
+        """Instants in s, shape (N,)."""
         return self.response.t
 
     @property
@@ -96,13 +87,7 @@ class ScenarioRun(AbstractResult):
         return self.response.active
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        """Return a signal by its name, shape (N,).
-
-        Raises
-        ------
-        DesignError
-            If there is no such signal; the message lists those that there are.
-        """
+        """Return a signal by its name, shape (N,)."""
         if name not in self.units:
             known = ", ".join(signal.name for signal in self.signals)
             raise DesignError(f"there is no signal {name!r}", remedy=f"signals here: {known}")
@@ -183,17 +168,9 @@ class ScenarioRun(AbstractResult):
 
 @dataclass(frozen=True, repr=False)
 class Simulation(AbstractResult):
-    """Runs of one spec, in the order of its scenarios.
+    """Runs of one spec, in the order of its scenarios."""
 
-    Parameters
-    ----------
-    designed : nrs_design.pipeline.design.Designed
-        The spec and its gains.
-    runs : tuple of ScenarioRun
-        One for each scenario.
-    """
-
-    designed: Designed
+    designed: Designed  # The spec and its gains
     runs: tuple[ScenarioRun, ...]
 
     @classmethod
@@ -204,23 +181,15 @@ class Simulation(AbstractResult):
 
         Parameters
         ----------
-        designed : Designed
-            The spec and its gains.
-        found : sequence of Simulated
-            Its runs.
-        proof : Certificate or None
-            Checked against the spec.
+        designed, found, proof
+            The spec and its gains, its runs, and a certificate that was checked against the spec.
         """
         from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
 
-        runs = (
-            ScenarioRun(designed, one)
-            if proof is None
-            else ScenarioRun(
-                designed, one, hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
-            )
-            for one in found
-        )
+        runs = [ScenarioRun(designed, one) for one in found]
+        if proof is not None:
+            asked = [(designed, proof, one) for one in found]
+            runs = [ScenarioRun(designed, a[2], hold_bounds(*a), hold_rate(*a)) for a in asked]
         return cls(designed, tuple(runs))
 
     def __iter__(self) -> Iterator[ScenarioRun]:
@@ -232,13 +201,7 @@ class Simulation(AbstractResult):
         return len(self.runs)
 
     def __getitem__(self, key: int | str) -> ScenarioRun:
-        """Return a run by its place or by the name of its scenario.
-
-        Raises
-        ------
-        DesignError
-            If there is no such scenario; the message lists those that there are.
-        """
+        """Return a run by its place or by the name of its scenario."""
         if not isinstance(key, str):
             return self.runs[key]
         named = {one.name: one for one in self.runs}

@@ -40,36 +40,24 @@ if TYPE_CHECKING:
 class Study:
     """One spec file and what can be done with it.
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec with its text and hash.
+    What cannot be done raises an error that says why: a DesignError if the spec gives matrices, or
+    a requirement cannot be met; a CertificateError if a file is no certificate of the spec; a
+    ClockError if the clock stopped a search, long after its budget of work should have.
     """
 
-    loaded: LoadedSpec
+    loaded: LoadedSpec  # The spec with its text and hash
 
     def __repr__(self) -> str:
         """Name the spec and its kind."""
         return f"<Study of {self.loaded.spec.name}, {self.loaded.spec.kind}>"
 
     def design(self) -> ControllerDesign | None:
-        """Design the controllers; None where the spec gives matrices.
-
-        Raises
-        ------
-        DesignError
-            If a requirement cannot be met within its bounds.
-        """
+        """Design the controllers; None where the spec gives matrices."""
         designed = run_design(self.loaded)
         return None if designed is None else designed.design
 
     def optimize(self) -> Optimum:
         """Design the controllers; gains are floats with units, and margins come with them.
-
-        Raises
-        ------
-        DesignError
-            If the spec gives matrices, or a requirement cannot be met within its bounds.
 
         Examples
         --------
@@ -98,11 +86,6 @@ class Study:
         -------
         Audit
             With its verdict and every check.
-
-        Raises
-        ------
-        DataError, CertificateError
-            If a file cannot be used.
         """
         file = None if certificate is None else Path(certificate)
         library = load_wing("identification", "api.library")
@@ -114,11 +97,6 @@ class Study:
 
         In continuous time, at nominal values, in SI units; the closed loops are those of
         `Decision.state_spaces`.
-
-        Raises
-        ------
-        DesignError
-            If the spec gives matrices, which have no parts, or a requirement cannot be met.
 
         Examples
         --------
@@ -145,14 +123,6 @@ class Study:
         ----------
         method, budget, max_degree
             As for `certify`.
-
-        Raises
-        ------
-        DesignError, AssemblyError
-            If the spec has no design, or its modes make no switched system; or an option is out of
-            its range.
-        ClockError
-            If the clock stopped the search, long after its budget of work should have.
         """
         limits = _limits(self.loaded.spec, budget, max_degree)
         result = run_certification(self.loaded, method=_method(method), limits=limits)
@@ -184,13 +154,6 @@ class Study:
         Simulation
             One run after the other, by place or by name: ``simulation["shaken"]["torque"]``.
 
-        Raises
-        ------
-        DesignError, DataError
-            If the spec is no interaction design, or a scenario cannot be simulated.
-        CertificateError
-            If the file is no certificate of the spec.
-
         Examples
         --------
         >>> import nrs_design as nrs
@@ -217,13 +180,6 @@ class Study:
         certificate : path-like, optional
             Checked against the spec; its bounds stand beside the runs.
 
-        Raises
-        ------
-        DesignError
-            If the spec is no interaction design, or the adversary cannot play against it.
-        CertificateError
-            If the file is no certificate of the spec.
-
         Examples
         --------
         >>> import nrs_design as nrs
@@ -245,13 +201,6 @@ class Study:
         ----------
         certificate : path-like, optional
             A certificate to be re-checked; without it the design is certified afresh.
-
-        Raises
-        ------
-        DesignError
-            If the spec has no gains.
-        CertificateError
-            If the given file is not a certificate.
         """
         from nrs_design.exporters.export import export_design
 
@@ -289,10 +238,7 @@ def _runs(
 def load(path: str | Path) -> Study:
     """Read and validate a spec file.
 
-    Raises
-    ------
-    SpecError
-        With path, line, column, message and remedy.
+    A SpecError has path, line, column, message and remedy.
 
     Examples
     --------
@@ -311,7 +257,7 @@ def _method(name: str) -> Method:
 
 
 def _limits(spec: Spec, budget: float | None, max_degree: int | None) -> Limits:
-    """Return how far the search goes: as the spec says, where nothing else is said."""
+    """Return the limits of the search: options, else those of the spec."""
     from nrs_design.spec.certification import HIGHEST_DEGREE
 
     if budget is not None and not 0 < budget < math.inf:

@@ -17,18 +17,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class WorstFound(AbstractResult):
-    """What an adversary found: a lower bound of the worst that may happen in the model.
+    """What an adversary found: a lower bound of the worst that may happen in the model."""
 
-    Parameters
-    ----------
-    designed : nrs_design.pipeline.design.Designed
-        The spec and its gains.
-    case : nrs_design.pipeline.scenarios.WorstCase
-        His runs.
-    """
-
-    designed: Designed
-    case: WorstCase
+    designed: Designed  # The spec and its gains
+    case: WorstCase  # His runs
 
     @property
     def runs(self) -> tuple[WorstRun, ...]:
@@ -42,12 +34,12 @@ class WorstFound(AbstractResult):
 
     @property
     def limits(self) -> Mapping[str, float]:
-        """Of the quantities, as far as the spec has any, in SI."""
+        """Limits of the quantities, as far as the spec has any, in SI."""
         return self.case.limits
 
     @property
     def bounds(self) -> Mapping[str, float]:
-        """Of the quantities, not below what is certified, in SI."""
+        """Certified bounds of the quantities, in SI."""
         return self.case.bounds
 
     @property

@@ -38,6 +38,12 @@ class CertifiedGoal:
         """Keys that lead to it in the spec."""
         return "goals", self.key
 
+    @property
+    def line(self) -> str:
+        """The goal, and what is proved of it, in a line."""
+        ends = "PROVED" if self.met else "NOT PROVED"
+        return f"goal {self.key}, {self.wanted}: {ends}: {self.said}"
+
 
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
     """Yield the goals that what is proved decides, in exact arithmetic.

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.goals import print_goal, print_granted
+from nrs_design.cli.goals import print_granted
 from nrs_design.cli.options import Budget, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say, wants_details, wants_text
-from nrs_design.facts.certification import (
-    blocked_facts,
-    certification_facts,
-    margins_facts,
-)
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
+    from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.certification import Result
-    from nrs_design.search.certification import Certification
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.search.certification import Limits
 
 
 LargestBox = Annotated[
@@ -29,7 +28,7 @@ LargestBox = Annotated[
     typer.Option(
         "--margin",
         help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
-        "delay and period of a sampled loop, for what disturbs, and for missed deadlines. Takes "
+        "delay and period of a sampled loop, and for what disturbs. Takes "
         "minutes: each value is searched for 10 s at most.",
     ),
 ]
@@ -58,10 +57,10 @@ def certify_switching(
 
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
+    from nrs_design.api.decision import Decision, Further
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline.certification import Overrides, find_relief, search_limits
-    from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.runs import run_certification
 
     loaded = take_spec(spec)
@@ -71,51 +70,52 @@ def certify_switching(
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     with progress(f"certifying {loaded.spec.name}") as step:
         result = run_certification(loaded, method=method, limits=limits, progress=step)
+    verdict = str(result.certification.verdict)
     # Write and print the proof before looking for margins, which takes minutes.
-    written = _write(result, out)
+    decision = Decision(result, _write(result, out))
     if wants_text():
-        _print(result)
+        for line in decision.lines(verbose=wants_details()):
+            say(line, verdict=verdict if verdict.upper() in line else "")
+        print_granted(result)
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
-    blocked = None
-    # One rung alone may be at a loss for what others prove.
-    if method is Method.AUTO and str(result.certification.verdict) == "inconclusive":
-        from nrs_design.pipeline.blocked import find_blocked
-
-        with progress(f"why {loaded.spec.name} is not proved") as step:
-            blocked = find_blocked(result, limits, step)
-    with progress(f"margins of {loaded.spec.name}", lines=True) as step:
-        margins = run_proof_margins(result, limits, step, **asked)
-    relief = find_relief(result)
-    steps = _next_steps(result, **asked)
-
-    def facts() -> dict[str, Any]:
-        return (
-            certification_facts(result, written)
-            | margins_facts(margins)
-            | {"relief": list(relief), "next_steps": list(steps)}
-            | ({} if blocked is None else blocked_facts(blocked, loaded.path))
-        )
+    further = Further(
+        # One rung alone may be at a loss for what others prove.
+        blocked=_find_blocked(result, limits) if method is Method.AUTO else None,
+        margins=_find_margins(result, limits, asked),
+        relief=find_relief(result),
+        steps=_next_steps(result, asked),
+    )
+    decision = replace(decision, further=further)
 
     def show() -> None:
-        found = blocked is not None and blocked.proved
-        for line in relief if wants_details() or not found else ():
-            say(f"  {line}")
-        if any(asked.values()):
-            # Reports are slow to load, and a bare proof says nothing that only they can.
-            from nrs_design.reporting.remedies import margin_lines
+        for line in further.lines(loaded, verbose=wants_details()):
+            say(line)
 
-            for line in margin_lines(margins):
-                say(f"  {line}")
-        if blocked is not None:
-            from nrs_design.pipeline.blocked import blocked_lines
+    return Answer(decision.to_dict, show, exit_codes.OF_VERDICT[verdict])
 
-            for line in blocked_lines(blocked, loaded.path):
-                say(f"  {line}")
-        # The most promising comes first; what would be proved is a better one.
-        for line in steps if wants_details() else steps[: 0 if found or relief else 1]:
-            say(f"next: {line}")
 
-    return Answer(facts, show, exit_codes.OF_VERDICT[str(result.certification.verdict)])
+def _find_blocked(result: Result, limits: Limits) -> Blocked | None:
+    if str(result.certification.verdict) != "inconclusive":
+        return None
+    from nrs_design.pipeline.blocked import find_blocked
+
+    with progress(f"why {result.loaded.spec.name} is not proved") as step:
+        return find_blocked(result, limits, step)
+
+
+def _find_margins(result: Result, limits: Limits, asked: Mapping[str, bool]) -> ProofMargins:
+    from nrs_design.pipeline.margins import run_proof_margins
+
+    with progress(f"margins of {result.loaded.spec.name}", lines=True) as step:
+        return run_proof_margins(result, limits, step, **asked)
+
+
+def _next_steps(result: Result, asked: Mapping[str, bool]) -> tuple[str, ...]:
+    if str(result.certification.verdict) == "proved":
+        return ()
+    from nrs_design.reporting.remedies import next_steps
+
+    return next_steps(result, **asked, spec=result.loaded.path)
 
 
 def _write(result: Result, path: Path | None) -> Path | None:
@@ -127,40 +127,3 @@ def _write(result: Result, path: Path | None) -> Path | None:
     write_certificate(result.certificate, result.loaded.path, path)
     note(f"certificate written to {path}")
     return path
-
-
-def _next_steps(result: Result, **asked: bool) -> tuple[str, ...]:
-    if str(result.certification.verdict) == "proved":
-        return ()
-    from nrs_design.reporting.remedies import next_steps
-
-    return next_steps(result, **asked, spec=result.loaded.path)
-
-
-def _print(result: Result) -> None:
-    from nrs_design.certificates.goals import certified_goals
-
-    certification = result.certification
-    system, verdict = certification.system, str(certification.verdict)
-    say(f"{result.loaded.spec.name}: {verdict.upper()}{_after(certification)}", verdict=verdict)
-    for statement, short in result.briefs:
-        say(f"  {statement.claim(system) if wants_details() else short}")
-    for attempt in certification.attempts:
-        # A bound that was wanted and not found must be visible.
-        sought = attempt.step.startswith(("bound on ", "decay under"))
-        if wants_details() or (sought and attempt.outcome != "found"):
-            # Steps that were skipped took no time.
-            took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
-            took = took if attempt.seconds else ""
-            say(f"  {attempt.step}: {attempt.outcome}{took}")
-    for goal in certified_goals(result.loaded.spec, result.certificate):
-        print_goal(goal, "  ")
-    print_granted(result)
-
-
-def _after(certification: Certification) -> str:
-    """Say beside the verdict what it leaves open."""
-    refuted = certification.refuted_in
-    if refuted is not None:
-        return f" (refuted {refuted}; open where contact may be lost)"
-    return "" if certification.evidence is not None else ": no proof, and no signal that grows"

@@ -13,7 +13,6 @@ from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
     from nrs_design.api.optimum import Optimum
-    from nrs_design.certificates.goals import CertifiedGoal
     from nrs_design.design.analysis import AbstractControllerAnalysis
     from nrs_design.pipeline.certification import Result
 
@@ -44,12 +43,6 @@ def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None
         print_table(f"{name}: goals", columns, rows)
         for line in (*MEANING[:-1], *computed({item.name: item.proved_titles for item in items})):
             detail(line)
-
-
-def print_goal(goal: CertifiedGoal, indent: str = "") -> None:
-    """Print what is proved of a goal of the certificate."""
-    ends = "PROVED" if goal.met else "NOT PROVED"
-    say(f"{indent}goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
 
 
 def print_granted(result: Result) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
-from nrs_design.cli.goals import design_answer, print_goal, print_granted
+from nrs_design.cli.goals import design_answer, print_granted
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.tables import print_table
@@ -65,7 +65,7 @@ def optimize(spec: SpecFile) -> Answer:
         _print(shown)
         if found is not None:
             for goal in goals:
-                print_goal(goal)
+                say(goal.line)
             _print_certified(shown, found)
             _print_freed(designed, shown, found)
 

@@ -9,7 +9,6 @@ import datetime
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import chain
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
@@ -17,47 +16,17 @@ if TYPE_CHECKING:
 
 
 class Linked(str):
-    """Text with a link to a line of the spec, counted from 1."""
+    """Text with a link: to a line of the spec, counted from 1, or to a section by its title."""
 
-    __slots__ = ("line",)
+    __slots__ = ("line", "section")
     line: int
-
-    def __new__(cls, text: str, line: int) -> Self:
-        """Attach a line to a text."""
-        made = super().__new__(cls, text)
-        made.line = line
-        return made
-
-
-class Derived(str):
-    """Text, such as a number at the head, with a link to the section, by title, that derives it."""
-
-    __slots__ = ("section",)
     section: str
 
-    def __new__(cls, text: str, section: str) -> Self:
-        """Attach a section to a text."""
+    def __new__(cls, text: str, line: int = 0, section: str = "") -> Self:
+        """Attach a line or a section to a text."""
         made = super().__new__(cls, text)
-        made.section = section
+        made.line, made.section = line, section
         return made
-
-
-class Sentence(str):
-    """Text with hyperlinks; sentences among its parts become its own."""
-
-    __slots__ = ("parts",)
-    parts: tuple[str, ...]
-
-    def __new__(cls, *parts: str) -> Self:
-        """Put parts together."""
-        made = super().__new__(cls, "".join(parts))
-        made.parts = tuple(chain.from_iterable(map(parts_of, parts)))
-        return made
-
-
-def parts_of(text: str) -> tuple[str, ...]:
-    """Return the parts of a text; one that is no `Sentence` is its own only part."""
-    return text.parts if isinstance(text, Sentence) else (text,)
 
 
 class State(StrEnum):
@@ -73,9 +42,9 @@ class State(StrEnum):
 class Light:
     """Status of one topic at the top of the page."""
 
-    name: str  # What it is about, such as ``Proof``
-    state: State  # Which colour and sign it has
-    text: str  # The same in words
+    name: str  # Topic, such as ``Proof``
+    state: State  # Colour and sign
+    text: str  # State in words
     section: str = ""  # Title of the section that says more; empty for none
 
 
@@ -89,7 +58,7 @@ class Listing:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Running text, such as a `Sentence`."""
+    """Running text."""
 
     text: str
 
@@ -108,7 +77,7 @@ class Table:
 
     title: str  # Caption above the table
     columns: tuple[str, ...]  # Headings, with units
-    # Cells; one that is `Linked` leads to its line of the spec, parts of a `Sentence` likewise.
+    # Cells; a `Linked` cell leads to its line of the spec.
     rows: tuple[tuple[str, ...], ...]
 
 
@@ -118,7 +87,7 @@ class Illustration:
 
     name: str  # Unique in the report; letters, digits and hyphens, so that it can be a file name
     title: str  # Heading above the figure
-    caption: str  # What is seen, and what it does not show
+    caption: str  # Content of the figure, and its limits
     figure: Figure  # Drawn, but not yet in a file format
 
 
@@ -132,7 +101,7 @@ class Section:
     title: str
     blocks: tuple[Block, ...]
     boxed: bool = False
-    folded: bool = False  # Whether a page shows its title only, until a reader opens it
+    folded: bool = False  # Only the title is shown until a reader opens the section
 
     @property
     def illustrations(self) -> list[Illustration]:
@@ -147,11 +116,9 @@ class Report:
     # name, title: of the spec; the title may be empty.
     name: str
     title: str
-    # Of the certification, the judgement of a run, a comparison or a robot, or that this is an
-    # identification, or a gallery of runs.
-    verdict: str
-    claim: str  # What the certificate states about stability, or that nothing is known
-    # What else is shown, such as that no common quadratic function exists.
+    verdict: str  # Verdict of the certification, of a run or of a robot, or ``identification``
+    claim: str  # Claim of the certificate about stability, or ``NO_CLAIM``
+    # Other claims, such as that no common quadratic function exists.
     remarks: tuple[str, ...]
     # Label and value: hashes, versions, rates; values may have links.
     facts: tuple[tuple[str, str], ...]
@@ -166,16 +133,15 @@ class Report:
     summary: tuple[str, ...] = ()
     lights: tuple[Light, ...] = ()  # Below the sentences
     key: tuple[tuple[str, str], ...] = ()  # Label and value of what a reader wants to know first
-    lead: str = ""  # Name of the figure that a page shows beside them, or empty
+    lead: str = ""  # Name of the figure beside the key facts, or empty
     # The text of the certificate that its id is the hash of, which a page can check; or empty.
     certificate: str = ""
-    # As the reader gave it. Without one the report has no date, and the same spec gives the same
-    # report on any day.
+    # Date of the reader. Without a date, the same spec gives the same report on any day.
     date: datetime.date | None = None
 
     @property
     def listed(self) -> int:
-        """How many lines of a spec the report holds; links to others would lead nowhere."""
+        """Number of lines of the spec in the report; other lines have no links."""
         blocks = (block for section in self.sections for block in section.blocks)
         return max((len(block.lines) for block in blocks if isinstance(block, Listing)), default=0)
 

@@ -12,16 +12,16 @@ from nrs_design.axis import unit as shown_unit
 from nrs_design.certificates.certificate import Verdict, refutes_in_contact
 from nrs_design.pipeline.blocked import blocked_lines
 from nrs_design.pipeline.certification import Result, find_relief
+from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 from nrs_design.proof.mode import Time
-from nrs_design.reporting.document import Block, Bullets, Section
+from nrs_design.reporting.document import Bullets, Section
 from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec, RobotSpec
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.blocked import Blocked
-    from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.margin import Bracket
+    from nrs_design.search.margin import Bracket, MarginBrackets
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
@@ -38,51 +38,43 @@ def remedies_section(
     blocked: Blocked | None = None,
 ) -> Section | None:
     """Report the margins of the proof and the next steps; None without either."""
-    blocks: list[Block] = []
-    if relief := find_relief(result):
-        blocks.append(Bullets("Gains that would hold", relief))
+    lists = {"Gains that would hold": find_relief(result)}
     if blocked is not None:
-        why = blocked_lines(blocked, Path(result.loaded.path.name))
-        blocks.append(Bullets("Why it is not proved", why))
-    lines = () if margins is None else tuple(margin_lines(margins))
-    if lines:
-        said = tuple(f"{line[0].upper()}{line[1:]}." for line in lines)
-        blocks.append(Bullets("How far a proof reaches", said))
-    box = margins is not None and margins.box is not None
-    dwell = margins is not None and margins.dwell is not None
-    steps = next_steps(result, margin=box, shortest_dwell=dwell)
-    if steps:
-        blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
-    return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
+        path = Path(result.loaded.path.name)
+        lists["Why it is not proved"] = blocked_lines(blocked, path)
+    margins = margins or ProofMargins()
+    said = tuple(f"{line[0].upper()}{line[1:]}." for line in margin_lines(margins))
+    lists["How far a proof reaches"] = said
+    box, dwell = margins.box is not None, margins.dwell is not None
+    if steps := next_steps(result, margin=box, shortest_dwell=dwell):
+        lists["Next steps"] = (*steps[:-1], _DESIGN, steps[-1])
+    blocks = tuple(Bullets(title, items) for title, items in lists.items() if items)
+    return Section(REMEDIES if steps else MARGINS, blocks) if blocks else None
 
 
 def margin_lines(margins: ProofMargins) -> Iterator[str]:
     """Yield a sentence, in small letters and without its full stop, for each margin."""
-    yield from _box_lines(margins)
-    yield from _loop_lines(margins)
-    yield from _dwell_lines(margins)
+    if margins.box is not None:
+        yield f"largest box: {_box_text(margins.box)}"
+    if margins.loop is not None:
+        yield from _loop_lines(margins.loop)
+    if margins.dwell is not None:
+        yield f"shortest dwell time: {_dwell_text(margins.dwell)}"
 
 
-def _box_lines(margins: ProofMargins) -> Iterator[str]:
-    box = margins.box
-    if box is None:
-        return
+def _box_text(box: Bracket) -> str:
     beyond = f"; {box.end}" if box.end else ""
     if box.refuted is not None:
         beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted{_in(box.refuted_in)}"
     if box.proved is None or box.proof is None:
-        yield f"largest box: not even the nominal values are proved{beyond}"
-        return
-    yield (
-        f"largest box: scaled by {rounded_down(box.proved)} about their nominal values, all ranges "
-        f"are proved ({box.proof.method}){beyond}"
+        return f"not even the nominal values are proved{beyond}"
+    return (
+        f"scaled by {rounded_down(box.proved)} about their nominal values, all ranges are proved "
+        f"({box.proof.method}){beyond}"
     )
 
 
-def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
-    dwell = margins.dwell
-    if dwell is None:
-        return
+def _dwell_text(dwell: Bracket) -> str:
     proved = f"no proof up to {LONGEST_DWELL} s, where the search ended"
     if dwell.proved is not None and dwell.proof is not None:
         proved = f"{rounded_up(dwell.proved, 's')} is proved ({dwell.proof.method})"
@@ -90,13 +82,10 @@ def _dwell_lines(margins: ProofMargins) -> Iterator[str]:
     if dwell.refuted is not None:
         end = rounded_down(dwell.refuted, "s")
         refuted = f"; {end} and all shorter ones are refuted{_in(dwell.refuted_in)}"
-    yield f"shortest dwell time: {proved}{refuted}"
+    return f"{proved}{refuted}"
 
 
-def _loop_lines(margins: ProofMargins) -> Iterator[str]:
-    loop = margins.loop
-    if loop is None:
-        return
+def _loop_lines(loop: MarginBrackets) -> Iterator[str]:
     more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
         refuted = f"refuted from *{_in(loop.delay.refuted_in)}"

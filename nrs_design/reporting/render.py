@@ -16,7 +16,6 @@ from nrs_design.reporting.document import (
     Section,
     State,
     Table,
-    parts_of,
 )
 from nrs_design.reporting.images import to_svg
 
@@ -53,7 +52,6 @@ def render_html(report: Report, origin: str | None = None) -> str:
     return environment.get_template("report.html.j2").render(
         report=report,
         sections=sections,
-        parts_of=parts_of,
         origin=origin,
         signs=_SIGNS,
         # Quotes stay, which are half of it.

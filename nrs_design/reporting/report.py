@@ -18,9 +18,7 @@ from nrs_design.reporting.sections.head import (
     key_facts,
     lights_of,
     proved_rate,
-    remarks_of,
     summary_of,
-    tests_section,
 )
 from nrs_design.reporting.sections.mode_logic import logic_section
 from nrs_design.reporting.sections.modes import modes_section
@@ -41,9 +39,6 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
 
-# The run under the worst signal that was found, beside its proved bound.
-LEAD = "run"
-
 
 def build_report(
     result: Result,
@@ -60,7 +55,7 @@ def build_report(
     with about(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
         system = certification.system
-        first = (tests_section(result), remedies_section(result, margins, blocked))
+        first = remedies_section(result, margins, blocked)
         others = (
             proof_section(result),
             *(design_sections(designed, analysis) if designed else ()),
@@ -74,19 +69,23 @@ def build_report(
             recheck_section(result),
             spec_section(result.loaded),
         )
-        sections = (*first, *(replace(item, folded=True) for item in others if item is not None))
+        sections = (first, *(replace(item, folded=True) for item in others if item is not None))
         return Report(
             name=spec.name,
             title=spec.title,
             verdict=str(certification.verdict),
             claim=claim_of(certification),
-            remarks=remarks_of(certification),
+            remarks=tuple(
+                statement.claim(system)
+                for statement in certification.statements
+                if statement is not certification.evidence
+            ),
             facts=facts(result),
             sections=tuple(section for section in sections if section is not None),
             summary=summary_of(result),
             lights=lights_of(result, analysis),
             key=key_facts(result, analysis),
-            lead=LEAD,
+            lead="run",  # Under the worst signal that was found, beside its proved bound
             certificate=canonical(to_document(result.certificate)) if result.certificate else "",
             date=date,
         )

@@ -15,19 +15,11 @@ from nrs_design.reporting.formatting import wrapped_label
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.ticker import Formatter
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart, without its yellow, which
 # is too faint on white.
-BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#AA4499",
-    "#56B4E9",
-    "#E69F00",
-)
-CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE)
+CYCLE = ("#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#E69F00")
+BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = CYCLE
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (6, 2, 1.5, 2)))
 # So many series differ in color or marker; more than these are drawn alike.
@@ -36,22 +28,10 @@ ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
 # What these colours are in a page, which may be light or dark; in a file they stay as they are.
-THEMED = {
-    tint.lower(): f"var(--{name},{tint})"
-    for name, tint in (
-        ("ink", INK),
-        ("muted", MUTED),
-        ("grid", GRID),
-        ("paper", "#ffffff"),
-        ("alarm", ALARM),
-        ("blue", BLUE),
-        ("vermillion", VERMILLION),
-        ("green", GREEN),
-        ("purple", PURPLE),
-        ("sky", SKY),
-        ("orange", ORANGE),
-    )
-}
+_PAGE_COLORS = {"ink": INK, "muted": MUTED, "grid": GRID, "paper": "#ffffff", "alarm": ALARM}
+_NAMES = ("blue", "vermillion", "green", "purple", "sky", "orange")
+_PAGE_COLORS |= dict(zip(_NAMES, CYCLE, strict=True))
+THEMED = {tint.lower(): f"var(--{name},{tint})" for name, tint in _PAGE_COLORS.items()}
 
 # In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
 _WIDTH = 5.4
@@ -247,13 +227,23 @@ def write_ticks_in_full(figure: Figure) -> None:
     """Replace the formatters of all numeric axes: no offset, no common factor in a corner."""
     from nrs_design.plotting import LogFormatter, ScalarFormatter
 
+    class InFull(ScalarFormatter):
+        def format_ticks(self, values: Sequence[float]) -> list[str]:
+            distance = float(values[1] - values[0]) if len(values) > 1 else None
+            return [in_full(value, distance or abs(value) or 1.0) for value in values]
+
+    class InPowers(LogFormatter):
+        def __call__(self, value: float, pos: int | None = None) -> str:
+            # Where the axis spans few decades, ticks between powers have labels, too.
+            return in_full(value, abs(value) or 1.0) if super().__call__(value, pos) else ""
+
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             if isinstance(axis.get_major_formatter(), LogFormatter):
-                axis.set_major_formatter(_logarithmic(base_only=True))
-                axis.set_minor_formatter(_logarithmic(base_only=False))
+                axis.set_major_formatter(InPowers(labelOnlyBase=True))
+                axis.set_minor_formatter(InPowers(labelOnlyBase=False))
             elif isinstance(axis.get_major_formatter(), ScalarFormatter):
-                axis.set_major_formatter(_plain())
+                axis.set_major_formatter(InFull(useOffset=False))
 
 
 def in_full(value: float, step: float) -> str:
@@ -275,27 +265,3 @@ def _trimmed(digits: str) -> str:
     if "." in digits:
         digits = digits.rstrip("0").rstrip(".")
     return digits.replace("-", "−")
-
-
-def _plain() -> Formatter:
-    from nrs_design.plotting import Formatter
-
-    class InFull(Formatter):
-        """Writes all ticks at once: to find their distance anew for each would be slow."""
-
-        def format_ticks(self, values: Sequence[float]) -> list[str]:
-            distance = float(values[1] - values[0]) if len(values) > 1 else None
-            return [in_full(value, distance or abs(value) or 1.0) for value in values]
-
-    return InFull()
-
-
-def _logarithmic(*, base_only: bool) -> Formatter:
-    """Return what writes 0.6, not 6e-1; where the axis spans few decades, between powers, too."""
-    from nrs_design.plotting import LogFormatter
-
-    class InPowers(LogFormatter):
-        def __call__(self, value: float, pos: int | None = None) -> str:
-            return in_full(value, value) if super().__call__(value, pos) else ""
-
-    return InPowers(labelOnlyBase=base_only)

@@ -11,14 +11,12 @@ from nrs_design.axis import current, labelled
 from nrs_design.axis import unit as shown
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import Result
-from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.run import BoundedSignal, draw_bounded_run
+from nrs_design.reporting.figures.simulated import Panel, draw_panels, iterate_stays
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.run import common_lever_arm
-from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.worst_case import DEFLECTION, WorstRun, output_values, pushes_only
 
 if TYPE_CHECKING:
@@ -41,7 +39,7 @@ UNDECLARED = (
     "with `disturbances` a bound can be certified."
 )
 ABOVE = " (above)"
-# Which effects the adversary does not use.
+# Effects that the adversary does not use.
 LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
 _TITLE = "Worst case found"
@@ -87,24 +85,20 @@ def worst_case_section(result: Result) -> Section | None:
         said = f"{error.message[0].upper()}{error.message[1:]}."
         return Section(_TITLE, (Paragraph(said),))
     undeclared = "" if case.declared else f"{UNDECLARED} "
-    said = f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. "
-    rows = tuple(_linked(designed, row) for row in worst_rows(case, designed.spec))
-    drawn = draw_worst(case, case.runs[0], designed.spec)
-    return Section(
-        _TITLE,
-        (
-            Paragraph(f"{said}Floating point, no part of the proof."),
-            Table("Worst found, limit and bound", COLUMNS, rows),
-            Illustration("worst-case", "The worst run found", _CAPTION, drawn),
-        ),
+    said = (
+        f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. Floating point, no part of the proof."
     )
-
-
-def _linked(designed: Designed, row: list[str]) -> tuple[str, ...]:
-    """Return a row in which the limit leads to the line that sets it."""
-    name, found, unit, limit, *rest = row
-    key = "torque" if name == "force" else name
-    return (name, found, unit, linked(designed.loaded, limit, "limits", key), *rest)
+    rows, loaded = [], designed.loaded
+    for name, found, unit, limit, *rest in worst_rows(case, designed.spec):
+        key = "torque" if name == "force" else name
+        rows.append((name, found, unit, linked(loaded, limit, "limits", key), *rest))
+    figure = draw_worst(case, case.runs[0], designed.spec)
+    blocks = (
+        Paragraph(said),
+        Table("Worst found, limit and bound", COLUMNS, tuple(rows)),
+        Illustration("worst-case", "The worst run found", _CAPTION, figure),
+    )
+    return Section(_TITLE, blocks)
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
@@ -127,17 +121,11 @@ def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> F
     names = [channel.name for channel in case.system.channels]
     if _COMMAND in names:
         command = current().fine * run.disturbances[:, names.index(_COMMAND)]
-        held = np.append(command, command[-1:])[:, None]
-        panels.append(BoundedSignal(labelled("Command [deg/s]"), held, None, None))
-    labels = [_controller(name) for name in _modes(case)]
-    who = list(dict.fromkeys(labels))
-    mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)
-    return draw_bounded_run(SwitchedRun(run.time, run.states, mode), panels, who)
-
-
-def _modes(case: WorstCase) -> tuple[str, ...]:
+        panels.append(Panel(labelled("Command [deg/s]"), {"": np.append(command, command[-1:])}))
     free = () if case.system.contact is None else case.system.contact.free
-    return tuple(mode.name for mode in (*case.system.modes, *free))
+    modes = [_controller(mode.name) for mode in (*case.system.modes, *free)]
+    active = [modes[mode] for mode in run.mode.tolist()]
+    return draw_panels(run.time, panels, [*iterate_stays(run.time, active)])
 
 
 def _controller(mode: str) -> str:
@@ -146,15 +134,14 @@ def _controller(mode: str) -> str:
     return f"{parts[0]}, no contact" if "free" in parts[1:] else parts[0]
 
 
-def _panel(
-    case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None
-) -> BoundedSignal:
+def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
     factor, unit = scale_of(output.name, output.unit, lever_arm)
+    values = factor * output_values(case.system, output, run.states)
+    # Of all values over the range of the contact, those that go farthest.
+    farthest = values[:, np.abs(values).max(axis=0).argmax()]
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
-    return BoundedSignal(
-        f"{output.name.capitalize()} [{unit}]",
-        factor * output_values(case.system, output, run.states),
-        None if limit is None else factor * limit,
-        None if bound is None else np.full(len(run.time), factor * bound),
-        one_sided=pushes_only(case.system, output),
-    )
+    both, signs = (1, -1), (1,) if pushes_only(case.system, output) else (1, -1)
+    limits = () if limit is None else tuple(sign * factor * limit for sign in both)
+    bounds = () if bound is None else tuple(sign * factor * bound for sign in signs)
+    label = f"{output.name.capitalize()} [{unit}]"
+    return Panel(label, {output.name: farthest}, limits, bounds, "certified bound")

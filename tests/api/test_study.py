@@ -5,7 +5,7 @@ import json
 import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import CertificateError, DesignError
+from nrs_design.errors import DesignError
 from tests.api.pairs import pair
 from tests.support import ROOT, SOFT_TISSUE
 
@@ -48,13 +48,3 @@ def test_scenarios_are_simulated():
         study.simulate(engine="fast")
     with pytest.raises(DesignError, match="describes no interaction"):
         nrs.load(ROOT / "specs/examples/commuting.nrs.yaml").simulate()
-
-
-def test_the_worst_case_stands_beside_limits(tmp_path):
-    study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
-    case = study.worst_case()
-    assert {run.output.name for run in case.runs} == {"force", "velocity", "deflection"}
-    assert case.limits["force"] == pytest.approx(0.3)
-    assert not case.bounds
-    with pytest.raises(CertificateError):
-        study.worst_case(tmp_path / "none.cert.json")

@@ -22,19 +22,23 @@ math.sqrt(x + 2)
 '''
 
 
-def test_cells():
+def test_cells_share_their_names_and_show_what_they_print_and_end_with():
     words, first, second = read_cells(SOURCE)
     assert (words.is_code, words.source) == (False, "# Title\n\nWords.")
     assert (first.is_code, first.source) == (True, "import math\nx = 2")
     assert second.source.endswith("math.sqrt(x + 2)")
-
-
-def test_cells_share_their_names_and_show_what_they_print_and_end_with():
-    cells = run_cells(read_cells(SOURCE))
+    cells = run_cells([words, first, second])
     assert [cell.printed for cell in cells] == ["", "", "x is 2\n2.0\n"]
     page, images = page_of(cells, "name")
     assert "```text\nx is 2\n2.0\n```" in page
     assert images == {}
+    document = json.loads(notebook_of(cells))
+    assert (document["nbformat"], document["nbformat_minor"]) == (4, 5)
+    written = document["cells"]
+    assert [cell["cell_type"] for cell in written] == ["markdown", "code", "code"]
+    assert len({cell["id"] for cell in written}) == 3
+    assert "".join(written[1]["source"]) == "import math\nx = 2"
+    assert written[2]["outputs"][0]["text"] == ["x is 2\n", "2.0\n"]
 
 
 DRAWING = """# %%
@@ -58,16 +62,6 @@ def test_a_figure_becomes_an_image():
 def test_an_error_is_not_swallowed():
     with pytest.raises(ZeroDivisionError):
         run_cells(read_cells("# %%\n1 / 0\n"))
-
-
-def test_the_notebook_is_one_of_jupyter():
-    document = json.loads(notebook_of(run_cells(read_cells(SOURCE))))
-    assert (document["nbformat"], document["nbformat_minor"]) == (4, 5)
-    kinds = [cell["cell_type"] for cell in document["cells"]]
-    assert kinds == ["markdown", "code", "code"]
-    assert len({cell["id"] for cell in document["cells"]}) == 3
-    assert "".join(document["cells"][1]["source"]) == "import math\nx = 2"
-    assert document["cells"][2]["outputs"][0]["text"] == ["x is 2\n", "2.0\n"]
 
 
 @pytest.mark.slow

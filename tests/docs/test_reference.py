@@ -6,7 +6,8 @@ import types
 import pytest
 import typer
 from making.commands import commands_page
-from making.faults import DocumentationError
+from making.commands import silent as silent_names
+from making.faults import DocumentationError, refuse
 from making.library import library_page
 from making.rules import rules_page
 from making.schemas import schema_names, schema_text, schemas_page
@@ -34,17 +35,10 @@ def test_an_option_without_help_stops_the_build():
     @app.command()
     def mute() -> None: ...
 
+    made = get_command(app)
+    made.help, made.params = "Help.", []
     with pytest.raises(DocumentationError, match="p mute, p silent times"):
-        commands_page_of(app)
-
-
-def commands_page_of(app):
-    command = get_command(app)
-    command.help, command.params = "Help.", []
-    from making.commands import silent
-    from making.faults import refuse
-
-    refuse("without help", silent(command, "p"))
+        refuse("without help", silent_names(made, "p"))
 
 
 def test_every_rule_and_verdict_is_listed():

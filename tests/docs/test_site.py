@@ -18,17 +18,9 @@ def pages_in(nav):
             yield from pages_in(held) if isinstance(held, list) else [held]
 
 
-def test_navigation_has_four_kinds():
-    assert [next(iter(entry)) for entry in NAV] == [
-        "Home",
-        "Tutorial",
-        "How-to",
-        "Reference",
-        "Explanation",
-    ]
-
-
-def test_no_page_is_named_twice():
+def test_navigation_has_four_kinds_and_names_no_page_twice():
+    kinds = ["Home", "Tutorial", "How-to", "Reference", "Explanation"]
+    assert [next(iter(entry)) for entry in NAV] == kinds
     named = list(pages_in(NAV))
     assert len(named) == len(set(named)) > 50
 

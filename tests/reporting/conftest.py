@@ -84,35 +84,12 @@ modes:
   - {name: m, A: [[0, 1], [-2 - k, -1]]}
 switching: arbitrary
 """,
-    # Hurwitz at both ends of k, with the eigenvalue 0.5 halfway.
-    "value": """\
-time: continuous
-parameters:
-  k: {nominal: 0, range: [0, 4], varies: false}
-modes:
-  - {name: m, A: [[-1, "3/4*k"], ["3 - 3/4*k", -1]]}
-switching: arbitrary
-""",
     "blocks": """\
 time: continuous
 modes:
   - {name: a, A: [[-1, -1, 3, 0], [1, -1, 0, 1], [0, 0, -2, 1], [0, 0, 0, -1]]}
   - {name: b, A: [[-1, -6, 0, 2], ["1/6", -1, 1, 0], [0, 0, -1, 0], [0, 0, 0, -3]]}
 switching: arbitrary
-""",
-    "blocks-refuted": """\
-time: continuous
-modes:
-  - {name: a, A: [[-1, -1, 3], [1, -1, 0], [0, 0, -2]]}
-  - {name: b, A: [[-1, -12, 0], ["1/12", -1, 1], [0, 0, -1]]}
-switching: arbitrary
-""",
-    "steps": """\
-time: discrete
-modes:
-  - {name: a, A: [["0.5", 1], [0, "0.5"]]}
-  - {name: b, A: [["0.5", 0], [1, "0.5"]]}
-switching: {dwell_time: 4 steps, transitions: [[a, b], [b, a]]}
 """,
     # Above the golden ratio's 0.618 the product of the two grows.
     "word": """\
@@ -145,7 +122,7 @@ modes:
 switching: arbitrary
 """
 # Left to the slow tests; of each, the default session has a case that is nearly the same.
-ALIKE = {"steps", "resets", "value", "blocks-refuted", "dwell-refuted"}
+ALIKE = {"resets", "dwell-refuted"}
 
 
 def slow(case: str) -> Any:

@@ -6,7 +6,6 @@ import html
 import json
 import re
 from fractions import Fraction
-from itertools import pairwise
 
 import pytest
 
@@ -79,22 +78,6 @@ def test_a_telephone_shows_all_of_it_legibly(browser, page, tmp_path, case):
         ".filter(t => t.scrollWidth > t.clientWidth + 1).map(t => t.ariaLabel)"
     )
     assert hidden == []
-
-
-@pytest.mark.parametrize("width", [375, 1280])
-def test_blocks_do_not_overlap(browser, page, tmp_path, width):
-    open_page(browser, page("proved"), tmp_path, width)
-    unfold(browser)
-    # On a wide screen the figure of the head stands beside the rest of it.
-    boxes = browser.execute_script(
-        "return [...document.querySelectorAll('header > :not(button, figure),"
-        "section > *:not(figure, details), details > *:not(figure), main figure > *')].map(e => {"
-        "const r = e.getBoundingClientRect(); return [r.top, r.bottom, e.tagName]})"
-    )
-    boxes = [box for box in boxes if box[1] > box[0]]
-    assert len(boxes) > 30
-    overlaps = [(a, b) for a, b in pairwise(boxes) if b[0] < a[1] - 1]
-    assert overlaps == []
 
 
 @pytest.mark.parametrize("case", ALL)

@@ -5,16 +5,6 @@ from nrs_design.reporting.figures.simulated import Panel, draw_panels
 T = np.linspace(0, 10, 20_001)
 
 
-def test_a_short_peak_is_drawn_however_long_the_run():
-    y = np.zeros_like(T)
-    y[12_345] = 1.0
-    figure = draw_panels(T, [Panel("y", {"y": y})])
-    (line,) = [line for line in figure.axes[0].get_lines() if line.get_label() == "y"]
-    assert len(line.get_xdata()) < 1000
-    assert line.get_ydata().max() == 1.0
-    assert line.get_xdata()[line.get_ydata().argmax()] == T[12_345]
-
-
 def test_limits_and_stays():
     panel = Panel("Torque [N m]", {"one": T, "two": T}, limits=(0.3,))
     stays = ((0.0, 6.0, "position"), (6.0, 6.01, "force"))

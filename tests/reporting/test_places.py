@@ -5,8 +5,8 @@ import re
 import pytest
 
 from nrs_design.certificates.catalogue import kinds
-from nrs_design.reporting.document import Linked, Sentence, Table, parts_of
-from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at, with_line
+from nrs_design.reporting.document import Linked, Table
+from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, SOFT_TISSUE
 
@@ -57,21 +57,3 @@ def test_a_mode_leads_to_its_matrix_or_its_controller():
     assert mode_at(design, "withdrawal/soft/k-min") == ("controllers", "withdrawal")
     assert contact_at(design, "withdrawal/soft/k-min") == ("environments", "soft")
     assert contact_at(given, "anything") == ()
-
-
-def test_a_sentence_names_its_line():
-    loaded = read_spec(SOFT_TISSUE)
-    said = with_line(loaded, "withdrawal: doubtful", "controllers", "withdrawal")
-    *_, line, end = parts_of(said)
-    assert (str(line), end) == (f"line {line.line}", ")")
-    assert loaded.text.splitlines()[line.line - 1].strip() == "withdrawal:"
-    assert with_line(loaded, "nothing of it is written", "sensor") == "nothing of it is written"
-
-
-def test_a_sentence_in_a_sentence_becomes_part_of_it():
-    inner = Sentence("at ", Linked("2", 7))
-    outer = Sentence("no more than ", Sentence("x ", inner), ".")
-    assert outer == "no more than x at 2."
-    assert parts_of(outer) == ("no more than ", "x ", "at ", "2", ".")
-    assert parts_of(outer)[3].line == 7
-    assert parts_of("plain") == ("plain",)

@@ -1,4 +1,4 @@
-"""The pages of statements, each chosen by what it shows and offers, never by its kind."""
+"""Pages of statements, chosen by conclusion and offer, never by kind."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,11 +15,12 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page
-from nrs_design.reporting.evidence.runs import BESIDE, EUCLIDEAN, GREEDY, Greedy, trials_per_step
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, Greedy, freely_switched, trials_per_step
 from nrs_design.reporting.formatting import shortened
-from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
+
+PageOf = Callable[[SwitchedSystem, AbstractEvidence], Page]
 
 _LISTED = 32
 _STRUCTURE = (
@@ -45,78 +46,61 @@ _RUN = (
 )
 
 
-@dataclass(frozen=True)
-class _Family:
-    system: SwitchedSystem
-    offer: Offer
-    page_of: Callable[[SwitchedSystem, AbstractEvidence], Page]  # of what a block shows
-
-    def block(self, index: int) -> SwitchedSystem:
-        return diagonal_block(self.system, self.offer.blocks[index])
-
-    def structure(self) -> tuple[Section, ...]:
-        """Summarize the evidence for the blocks."""
-        claims = tuple(
-            f"Block {index + 1}: {part.claim(self.block(index))}"
-            for index, part in self.offer.parts[:_LISTED]
-        )
-        blocks = (Paragraph(_STRUCTURE), self._table(), Bullets("Evidence of the blocks", claims))
-        return (Section("Block triangular structure", blocks),)
-
-    def obstruction(self) -> tuple[Section, ...]:
-        """Show the contradiction in the block that has no common quadratic function."""
-        (index, part), *_ = self.offer.parts
-        inner = self.block(index)
-        text = _WITHOUT.format(number=index + 1, states=shortened(inner.states, 6))
-        found = [block for s in self.page_of(inner, part).sections() for block in s.blocks]
-        title = f"No common quadratic function: block {index + 1}"
-        return (Section(title, (Paragraph(text), *found)),)
-
-    def run(self, rate: float) -> Section:
-        """Draw a run of the whole family, beside the rate of its slowest block."""
-        system, identity = self.system, np.eye(self.system.order)
-        hardest = replace(hardest_modes(system, None, trials_per_step(system)), contact=None)
-        initial = worst_direction(hardest, identity)
-        greedy = Greedy(system, hardest, quadratic_norm(identity), initial, rate)
-        return greedy.draw(BESIDE, f"{GREEDY} {_RUN}", EUCLIDEAN, "slope of the slowest block, ")
-
-    def _table(self) -> Table:
-        count, parts, discrete = (
-            len(self.offer.blocks),
-            dict(self.offer.parts),
-            self.system.time is Time.DISCRETE,
-        )
-        rows = []
-        for index in range(min(count, _LISTED)):
-            inner, part = self.block(index), parts.get(index)
-            proved = None if part is None else part.proved_rate(inner)
-            shown = "not needed" if part is None else self.page_of(inner, part).name
-            rate = rounded_up(proved) if proved is not None and discrete else ""
-            if proved is not None and not discrete:
-                rate = rounded_down(proved)
-            rows.append((f"{index + 1}", shortened(inner.states, 6), shown, rate))
-        unit = "rho per step [1]" if discrete else "alpha [1/s]"
-        some = f" (the first {_LISTED})" if count > _LISTED else ""
-        columns = ("Block", "States", "Evidence", f"Proved {unit}")
-        return Table(f"The {count} diagonal blocks{some}", columns, tuple(rows))
-
-
 def blocks_page(
-    system: SwitchedSystem,
-    evidence: AbstractEvidence,
-    offer: Offer,
-    page_of: Callable[[SwitchedSystem, AbstractEvidence], Page],
+    system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer, page_of: PageOf
 ) -> Page:
     """Return the page of the blocks; a block that settles the family gives its text and run."""
-    name, family = "blocks of its own", _Family(system, offer, page_of)
-    proved = evidence.proved_rate(system)
+    name, proved = "blocks of its own", evidence.proved_rate(system)
+    blocks = [diagonal_block(system, states) for states in offer.blocks]
+
+    def structure() -> tuple[Section, ...]:
+        return (_structure(blocks, offer, page_of),)
+
     if evidence.shows is Shows.STABILITY and proved is not None:
         unneeded = (*words.unneeded_constant(system), *words.unneeded_rules(system))
         meaning, rate = (_BOUND, *unneeded, words.decision(system)), float(proved)
-        return Page(name, meaning, (), lambda: family.run(rate), family.structure)
-    # It contains its block.
-    deciding = page_of(system, offer.parts[0][1])
+        return Page(name, meaning, (), lambda: _run(system, rate), structure)
+    index, part = offer.parts[0]
     if evidence.shows is Shows.NO_COMMON_QUADRATIC:
-        return replace(deciding, name=name, sections=family.obstruction)
+        inner = page_of(blocks[index], part)
+        text = _WITHOUT.format(number=index + 1, states=shortened(blocks[index].states, 6))
+        title = f"No common quadratic function: block {index + 1}"
+
+        def obstruction() -> tuple[Section, ...]:
+            shown = (block for section in inner.sections() for block in section.blocks)
+            return (Section(title, (Paragraph(text), *shown)),)
+
+        return replace(inner, name=name, sections=obstruction)
+    deciding = page_of(system, part)
     meaning = (_UNSTABLE, *deciding.meaning)
-    return replace(deciding, name=name, meaning=meaning, sections=family.structure)
+    return replace(deciding, name=name, meaning=meaning, sections=structure)
+
+
+def _structure(blocks: list[SwitchedSystem], offer: Offer, page_of: PageOf) -> Section:
+    """Summarize the evidence for the blocks."""
+    parts, discrete = dict(offer.parts), blocks[0].time is Time.DISCRETE
+    rounded = rounded_up if discrete else rounded_down
+    rows = []
+    for index, block in enumerate(blocks[:_LISTED]):
+        part = parts.get(index)
+        proved = None if part is None else part.proved_rate(block)
+        shown = "not needed" if part is None else page_of(block, part).name
+        rate = "" if proved is None else rounded(proved)
+        rows.append((f"{index + 1}", shortened(block.states, 6), shown, rate))
+    claims = tuple(
+        f"Block {index + 1}: {part.claim(blocks[index])}" for index, part in offer.parts[:_LISTED]
+    )
+    some = f" (the first {_LISTED})" if len(blocks) > _LISTED else ""
+    unit = "rho per step [1]" if discrete else "alpha [1/s]"
+    columns = ("Block", "States", "Evidence", f"Proved {unit}")
+    table = Table(f"The {len(blocks)} diagonal blocks{some}", columns, tuple(rows))
+    blocks_shown = (Paragraph(_STRUCTURE), table, Bullets("Evidence of the blocks", claims))
+    return Section("Block triangular structure", blocks_shown)
+
+
+def _run(system: SwitchedSystem, rate: float) -> Section:
+    """Draw a run of the family with the slope of the slowest block."""
+    identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))
+    norm, initial = quadratic_norm(identity), worst_direction(played, identity)
+    greedy = Greedy(system, played, norm, initial, rate)
+    return greedy.draw(_RUN, EUCLIDEAN, "slope of the slowest block, ")

@@ -11,22 +11,21 @@ import numpy as np
 
 from nrs_design.proof.bounds import at_most
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.document import Block, Paragraph, Section, Table
+from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Form, Offer, Page
 from nrs_design.reporting.evidence.runs import (
     Greedy,
     bounded_run,
+    freely_switched,
     ruled_run,
     slowest_in_a_round,
     trials_per_step,
 )
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.norms import (
     Array,
@@ -77,6 +76,8 @@ def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
 
 def matrix_tables(forms: Sequence[Form], states: tuple[str, ...]) -> list[Table]:
     """Return the matrices of the first quadratic forms as tables, if a page holds them."""
+    if forms[0].degree > 1:
+        return []
     matrices = scaled_matrices(*(form.Q for form in forms))
     shown = list(zip(forms, matrices, strict=True))[:_TABLES]
     return [_table(form.name, Q, states[: len(Q)]) for form, Q in shown if len(Q) <= _WRITTEN]
@@ -87,19 +88,6 @@ def _table(of: str, Q: Array, states: tuple[str, ...]) -> Table:
     return Table(f"Q{of and f' of {of}'}, divided by the largest entry", ("", *states), rows)
 
 
-# A page lists no more modes; those with the least slack are shown.
-_LISTED = 24
-_RATES = {
-    Time.CONTINUOUS: (
-        "Half the smallest eigenvalue of -(A'Q + QA) relative to Q: the rate at which the norm of "
-        "Q decays at least in this mode."
-    ),
-    Time.DISCRETE: (
-        "Root of the largest eigenvalue of A'QA relative to Q: the factor by which the norm of Q "
-        "shrinks at least in a step of this mode."
-    ),
-}
-_IN_CONTACT = " Free motion has conditions of its own, on the other states."
 # A run in the norm of a polynomial, or of many functions, tries no more modes.
 _MODES = 32
 _MONOMIALS = (
@@ -124,7 +112,7 @@ class _Functions:
 
     @property
     def name(self) -> str:
-        """Degree of the functions, and what there is one for."""
+        """Degree and scope of the functions."""
         degree = 2 * self._form.degree
         text = "quadratic function" if degree == 2 else f"polynomial of degree {degree}"
         if self.system.clock is not None:
@@ -137,7 +125,7 @@ class _Functions:
 
     @property
     def meaning(self) -> tuple[str, ...]:
-        """Say what decreases, what the bound means and rests on, and how it was decided."""
+        """State function, bound, assumptions and decision."""
         system = self.system
         said = list(words.function(system, lost=self._lost, each=len(self._touching) > 1))
         if self._ruled:
@@ -149,21 +137,14 @@ class _Functions:
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """Name signals that break the rules, and what would move the point of rest."""
+        """Name inadmissible signals and inputs that move the equilibrium."""
         outside = words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
         return (*outside, *words.function_limits(self.system, lost=self._lost))
 
     def sections(self) -> tuple[Section, ...]:
-        """Show the forms of the certificate, and how every mode decreases a common one."""
-        system = self.system
-        blocks: list[Block] = [Paragraph(self._text())]
-        if self._form.degree > 1:
-            blocks.append(_size(self.offer.forms, system.order))
-            return (Section(EVIDENCE, tuple(blocks)),)
-        blocks += matrix_tables(self._touching, system.states)
-        if len(self.offer.forms) == 1:
-            blocks += _rate_blocks(system, self._form, self._rate, lost=self._lost)
-        return (Section(EVIDENCE, tuple(blocks)),)
+        """Show the forms of the certificate."""
+        tables = matrix_tables(self._touching, self.system.states)
+        return (Section(EVIDENCE, (Paragraph(self._text()), *tables)),)
 
     def run(self) -> Section:
         """Draw a run below the bound."""
@@ -174,25 +155,21 @@ class _Functions:
             norms = step_norms(forms, system)
             greedy = Greedy(system, system, norms, slowest_in_a_round(system, norms), rate)
             return bounded_run(greedy, "in the norm of its step")
-        quadratic, single = self._form.degree == 1, len(forms) == 1
-        label = "in the norm of Q" if quadratic else f"in V^(1/{2 * self._form.degree})"
-        norm = largest_norm(forms, system.order)
-        if quadratic and single:
-            (Q,) = scaled_matrices(self._form.Q)
-            hardest = hardest_modes(system, Q, trials_per_step(system))
-            initial = worst_direction(hardest, Q)
+        norm, label = largest_norm(forms, system.order), "(largest norm)"
+        tried = trials_per_step(system)
+        if len(forms) == 1 and self._form.degree == 1:
+            label, (Q,) = "in the norm of Q", scaled_matrices(self._form.Q)
+            played = freely_switched(system, Q, tried)
+            initial = worst_direction(played, Q)
         else:
-            hardest = hardest_modes(system, None, min(trials_per_step(system), _MODES))
-            initial = sampled_direction(hardest, norm, fine_step(hardest))
+            label = f"in V^(1/{2 * self._form.degree})" if len(forms) == 1 else label
+            played = freely_switched(system, None, min(tried, _MODES))
+            initial = sampled_direction(played, norm, fine_step(played))
         if self._lost:
+            played = replace(played, contact=system.contact)
             norm = norm if any(form.free for form in forms) else clipped(norm)
             initial = initial if initial[-1] > 0 else -initial
-        else:
-            hardest = replace(hardest, contact=None)
-        return bounded_run(
-            Greedy(system, hardest, norm, initial, rate),
-            label if single else "(largest norm)",
-        )
+        return bounded_run(Greedy(system, played, norm, initial, rate), label)
 
     @property
     def _form(self) -> Form:
@@ -217,7 +194,7 @@ class _Functions:
         return rate
 
     def _text(self) -> str:
-        """Say what the certificate holds, and how large the constant in another norm is."""
+        """State the content of the certificate and the constant in the Euclidean norm."""
         forms, touching = self.offer.forms, self._touching
         each = "mode" if self.system.clock is None else _turn(self.system.clock)
         text = "The certificate holds one function for all modes"
@@ -243,42 +220,11 @@ class _Functions:
         )
 
 
-def _size(forms: tuple[Form, ...], order: int) -> Table:
-    degree, largest = forms[0].degree, max(len(form.Q) for form in forms)
-    bits = max(abs(entry).bit_length() for form in forms for row in form.Q for entry in row)
-    rows = (
-        ("Degree of V", str(2 * degree)),
-        ("Functions", number(len(forms), 9)),
-        (f"Monomials of degree {degree} in {order} states", number(largest, 9)),
-        ("Longest entry of Q [bit]", str(bits)),
-    )
-    return Table("The polynomial" if len(forms) == 1 else "The polynomials", ("", "Value"), rows)
-
-
 def _turn(clock: Clock) -> str:
     """Say what there is a function of."""
     if clock.counts_stays:
         return "sample of a stay"
     return "step of a round" if clock.is_round else "state of the rule for misses"
-
-
-def _rate_blocks(
-    system: SwitchedSystem, form: Form, claimed: Fraction, *, lost: bool
-) -> tuple[Block, ...]:
-    """Return how fast the modes with the least slack decrease a quadratic function.
-
-    `lost`: the certificate covers the loss of contact, on which these rates say nothing.
-    """
-    continuous = system.time is Time.CONTINUOUS
-    rates = mode_rates(system, scaled_matrices(form.Q)[0])
-    slack = rates - float(claimed) if continuous else float(claimed) - rates
-    order = np.argsort(slack, kind="stable")[:_LISTED]
-    rows = tuple((system.modes[i].name, number(rates[i], 6), number(slack[i], 3)) for i in order)
-    unit, quantity = (" [1/s]", "Decay rate") if continuous else (" [1]", "Contraction")
-    some = "" if len(rows) == len(rates) else f" ({len(rows)} with the least slack)"
-    title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
-    columns = ("Mode", f"{quantity} in the norm of Q{unit}", f"Slack{unit}")
-    return Paragraph(_RATES[system.time] + _IN_CONTACT * lost), Table(title, columns, rows)
 
 
 _CONSTANT = (
@@ -306,25 +252,24 @@ def constants_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Of
             words.decision(system),
         ),
         ("A constant parameter that changes while the system moves, however slowly.",),
-        lambda: _run(system, evidence, offer),
+        lambda: _run_at_corner(system, evidence, offer),
         lambda: (Section(EVIDENCE, (text, *matrix_tables(offer.forms, system.states))),),
         "however fast they change, the constant ones excepted",
     )
 
 
-def _run(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Section:
+def _run_at_corner(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Section:
     """Draw a run at the corner where the decay is slowest."""
     forms = scaled_matrices(*(form.Q for form in offer.forms))
     corners = [modes_at_corner(system, k) for k in range(len(forms))]
     slowest = max if system.time is Time.DISCRETE else min
     rates = [slowest(mode_rates(at, P)) for at, P in zip(corners, forms, strict=True)]
     k = rates.index(slowest(rates))
-    fixed, P = corners[k], forms[k]
-    hardest = replace(hardest_modes(fixed, P, trials_per_step(fixed)), contact=None)
-    proved = evidence.proved_rate(system)
+    fixed, P, proved = corners[k], forms[k], evidence.proved_rate(system)
     assert proved is not None  # it shows stability
+    played = freely_switched(fixed, P, trials_per_step(fixed))
     return bounded_run(
-        Greedy(fixed, hardest, quadratic_norm(P), worst_direction(hardest, P), float(proved)),
+        Greedy(fixed, played, quadratic_norm(P), worst_direction(played, P), float(proved)),
         "in the norm of P at this corner",
-        f"The constant parameters stay at corner {k + 1}, where the decay is slowest.",
+        f"The constant parameters stay at corner {k + 1}, where the decay is slowest. ",
     )

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page, offer_of
-from nrs_design.reporting.evidence.runs import Bound, run_figures
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, Bound
+from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, roots
 from nrs_design.simulation.periodic import (
     PeriodicRun,
@@ -60,11 +61,11 @@ _AT_A_VALUE = (
     "The parameter is unknown and constant, so it may have this one value all the time. The "
     "matrices at this value are computed exactly."
 )
-_AT_THIS_VALUE = (
-    "What follows is simulated at the value of the parameter that the claim names, between the "
-    "modes that are listed."
+_AT_THIS_VALUE = "Simulated at the value of the parameter that the claim names."
+_FROM_THE_FASTEST = (
+    "Simulated from the direction that grows the most, with every mode for its time and every "
+    "reset of its switches."
 )
-_FROM_THE_FASTEST = "Simulated from the direction that grows the most, with every mode for its time"
 _BY_SIGNS = (
     "Simulated from the enclosed direction, through contact and flight as the signs of the motion "
     "say."
@@ -93,28 +94,28 @@ def growth_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer
     """Return why one motion is enough, and the run that repeats its sequence of modes."""
     if offer.shares:
         return _at_a_value(system, offer)
-    witness, at_border = _Witness(system, offer), False
+    run, beyond = _repeated, _LINEAR
     if offer.weights:
-        name, meaning, at_border, run = _AVERAGE, _ON_AVERAGE, True, witness.average
+        name, meaning, run, beyond = _AVERAGE, _ON_AVERAGE, _average, _ON_THE_BORDER
     elif offer.factor is not None:
-        name, meaning, run = _CONTACT, _BY_ITSELF, witness.repeated
+        name, meaning = _CONTACT, _BY_ITSELF
     elif [time for _, time in offer.steps] == [0]:
-        name, meaning, at_border, run = _MODE, _IN_A_MODE, True, witness.in_a_mode
+        name, meaning, run, beyond = _MODE, _IN_A_MODE, _in_a_mode, _ON_THE_BORDER
     else:
-        name, meaning, run = _PERIOD, _PERIODIC, witness.repeated
+        name, meaning = _PERIOD, _PERIODIC
     region = "unit disk" if system.time is Time.DISCRETE else "left half plane"
     arbitrary = system.switching.is_arbitrary
     signals = "arbitrary switching" if arbitrary else "the declared switching"
     return Page(
         name,
         (meaning.format(signals=signals, region=region),),
-        (words.NO_FORECAST, _OTHERS, _ON_THE_BORDER if at_border else _LINEAR),
-        lambda: Section(_TITLE, tuple(run())),
+        (words.NO_FORECAST, _OTHERS, beyond),
+        lambda: Section(_TITLE, tuple(run(system, offer))),
     )
 
 
 def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
-    """Return the page of what happens at one value of the constant parameters."""
+    """Return the page of instability at one value of the constant parameters."""
     ((_, part),) = offer.parts
     page = growth_page(system_at(system, offer.shares), part, offer_of(part))
     run = page.run
@@ -127,88 +128,72 @@ def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
     )
 
 
-@dataclass(frozen=True)
-class _Witness:
-    system: SwitchedSystem
-    offer: Offer
-
-    @property
-    def is_discrete(self) -> bool:
-        return self.system.time is Time.DISCRETE
-
-    def in_a_mode(self) -> Iterator[Block]:
-        """Stay in the mode, from the eigenvector of its worst eigenvalue."""
-        ((name, _),) = self.offer.steps
-        modes = (*self.system.modes, *self.system.free_motions())
-        index = next(i for i, mode in enumerate(modes) if mode.name == name)
-        single = replace(
-            alone(replace(self.system, modes=modes), index), switching=ARBITRARY, clock=None
-        )
-        (values,) = mode_eigenvalues(single)
-        worst = complex(values[np.argmax(np.abs(values) if self.is_discrete else values.real)])
-        response = periodic_run(single, [(0, time_of_growth(worst, single))]).response
-        line = (
-            f"the eigenvalue alone, exp({worst.real:.4g} t)",
-            np.exp(worst.real * response.time),
-        )
-        if self.is_discrete:
-            line = (f"the eigenvalue alone, {abs(worst):.4g}^t", abs(worst) ** response.time)
-        yield from self._drawn(f"Staying in mode {name}", _STAYING, response, single, line)
-
-    def average(self) -> Iterator[Block]:
-        """Say where the eigenvalues of the average are."""
-        average = np.linalg.eigvals(mixture_matrix(self.system, self.offer.weights))
-        values = roots(average.astype(complex).tolist(), 6)
-        yield Paragraph(f"Eigenvalues of the average: {values} 1/s.")
-
-    def repeated(self) -> Iterator[Block]:
-        """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
-        system, offer, factor = self.system, self.offer, self.offer.factor
-        if factor is None:
-            steps = [(name, float(time)) for name, time in offer.steps]
-            run = periodic_run(system, _indexed(system, steps), offer.edges)
-            resets = " and the reset of each switch" if system.switching.resets else ""
-            caption = f"{_FROM_THE_FASTEST}{resets}. {_CARRIED_ON}"
-            yield self._factor(run)
-        else:
-            system = all_modes(system)
-            system = system.with_modes(system.modes, system.states, ARBITRARY)
-            # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
-            low = float(factor)
-            time, low = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)
-            steps = [(name, time * float(count)) for name, count in offer.steps]
-            run = periodic_run(system, _indexed(system, steps), eigenvalue=low)
-            unit = "each time" if self.is_discrete else "1/s"
-            caption = f"{_BY_SIGNS} It grows by {lower(factor)} {unit} at least. {_CARRIED_ON}"
-        response = run.response
-        periods = counted(round(response.time[-1] / run.period), "period")
-        growth = np.exp(math.log(run.radius) * response.time / run.period)
-        line = (f"factor {number(run.radius, 4)} per period", growth)
-        yield from self._drawn(f"The witness over {periods}", caption, response, system, line)
-
-    @staticmethod
-    def _drawn(
-        title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
-    ) -> tuple[Illustration, ...]:
-        norms = np.linalg.norm(response.state, axis=1)
-        return run_figures(title, caption, response, norms / norms[0], system, bound=line)
-
-    def _factor(self, run: PeriodicRun) -> Paragraph:
-        """Say how long a period is, and by which factor a state grows in it."""
-        unit = "steps" if self.is_discrete else "s"
-        rate = number(math.log(run.radius) / run.period, 4)
-        mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
-        return Paragraph(
-            f"One period lasts {run.period:.6g} {unit} and has "
-            f"{counted(len(self.offer.steps), 'step')}. Over one period some state grows by the "
-            f"factor {number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures "
-            "that the factor is above one; these digits are floating point."
-        )
+def _in_a_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
+    """Stay in the mode, from the eigenvector of its worst eigenvalue."""
+    ((name, _),) = offer.steps
+    modes, discrete = (*system.modes, *system.free_motions()), system.time is Time.DISCRETE
+    index = [mode.name for mode in modes].index(name)
+    single = replace(alone(replace(system, modes=modes), index), switching=ARBITRARY, clock=None)
+    (values,) = mode_eigenvalues(single)
+    worst = complex(values[np.argmax(np.abs(values) if discrete else values.real)])
+    response = periodic_run(single, [(0, time_of_growth(worst, single))]).response
+    rate = math.log(abs(worst)) if discrete else worst.real
+    label = f"{abs(worst):.4g}^t" if discrete else f"exp({worst.real:.4g} t)"
+    line = (f"the eigenvalue alone, {label}", np.exp(rate * response.time))
+    yield _drawn(f"Staying in mode {name}", _STAYING, response, single, line)
 
 
-def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list[tuple[int, float]]:
-    index = {mode.name: k for k, mode in enumerate(system.modes)}
-    return [(index[name], time) for name, time in steps]
+def _average(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
+    """Say where the eigenvalues of the average are."""
+    values = np.linalg.eigvals(mixture_matrix(system, offer.weights)).astype(complex)
+    yield Paragraph(f"Eigenvalues of the average: {roots(values.tolist(), 6)} 1/s.")
+
+
+def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
+    """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
+    discrete, start, edges, time = system.time is Time.DISCRETE, None, offer.edges, 1.0
+    caption = _FROM_THE_FASTEST
+    if offer.factor is not None:
+        system = all_modes(system)
+        system = system.with_modes(system.modes, system.states, ARBITRARY)
+        # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
+        start, edges, low = float(offer.factor), (), float(offer.factor)
+        if not discrete:
+            time, start = 1 / max(low, 1e-9), math.e
+        unit = "each time" if discrete else "1/s"
+        caption = f"{_BY_SIGNS} It grows by {lower(offer.factor)} {unit} at least."
+    names = [mode.name for mode in system.modes]
+    steps = [(names.index(name), time * float(count)) for name, count in offer.steps]
+    run = periodic_run(system, steps, edges, start)
+    if offer.factor is None:
+        yield _factor(run, len(steps), discrete=discrete)
+    response = run.response
+    periods = counted(round(response.time[-1] / run.period), "period")
+    growth = np.exp(math.log(run.radius) * response.time / run.period)
+    line = (f"factor {number(run.radius, 4)} per period", growth)
+    caption = f"{caption} {_CARRIED_ON}"
+    yield _drawn(f"The witness over {periods}", caption, response, system, line)
+
+
+def _drawn(
+    title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
+) -> Illustration:
+    norms = np.linalg.norm(response.state, axis=1)
+    figure = draw_run(response, norms / norms[0], line, system, EUCLIDEAN)
+    return Illustration("run", title, caption, figure)
+
+
+def _factor(run: PeriodicRun, steps: int, *, discrete: bool) -> Paragraph:
+    """Say how long a period is, and by which factor a state grows in it."""
+    unit = "steps" if discrete else "s"
+    rate = number(math.log(run.radius) / run.period, 4)
+    mean = "" if discrete else f", a mean growth rate of {rate} 1/s"
+    return Paragraph(
+        f"One period lasts {run.period:.6g} {unit} and has {counted(steps, 'step')}. Over one "
+        f"period some state grows by the factor {number(run.radius, 6)}{mean}. The certificate "
+        "shows with rigorous enclosures that the factor is above one; these digits are floating "
+        "point."
+    )
 
 
 _LISTED = 24
@@ -230,22 +215,15 @@ _TERMS = {
 
 def obstruction_page(system: SwitchedSystem, _: AbstractEvidence, offer: Offer) -> Page:
     """Return the argument, and the modes that contradict each other."""
-    return Page(
-        "no common quadratic function exists",
-        (_MEANING,),
-        (),
-        sections=lambda: (_section(system, offer),),
-    )
 
+    def sections() -> tuple[Section, ...]:
+        text = f"{_ARGUMENT.format(*_TERMS[system.time])} {_MEANING}"
+        heaviest = offer.weights[:_LISTED]
+        rows = tuple((name, number(float(share), 4)) for name, share in heaviest)
+        some = f", the {_LISTED} heaviest" if len(offer.weights) > _LISTED else ""
+        title = f"Weight of the modes in the contradiction{some}"
+        table = Table(title, ("Mode", "Share of the trace of X [1]"), rows)
+        return (Section("No common quadratic function", (Paragraph(text), table)),)
 
-def _section(system: SwitchedSystem, offer: Offer) -> Section:
-    """Say why there is none, and which modes contradict each other."""
-    text = f"{_ARGUMENT.format(*_TERMS[system.time])} {_MEANING}"
-    weights = offer.weights
-    rows = tuple((name, number(float(share), 4)) for name, share in weights[:_LISTED])
-    some = f", the {_LISTED} heaviest" if len(weights) > _LISTED else ""
-    left_out = len(system.modes) - len(weights)
-    none = f"; {left_out} modes have no part in it" if left_out else ""
-    title = f"Weight of the modes in the contradiction{some}{none}"
-    table = Table(title, ("Mode", "Share of the trace of X [1]"), rows)
-    return Section("No common quadratic function", (Paragraph(text), table))
+    name = "no common quadratic function exists"
+    return Page(name, (_MEANING,), (), sections=sections)

@@ -1,4 +1,4 @@
-"""The page of a statement, and what each kind of evidence offers it."""
+"""Page of a statement, and the content that each kind of evidence offers."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class Page:
     The claim is that of the evidence, and no page repeats it.
     """
 
-    name: str  # What it is, in a few words, for a table
-    meaning: tuple[str, ...]  # What the claim means, what it rests on, and how it was decided
-    limits: tuple[str, ...]  # What does not follow, beside what the meaning says of it
-    # Below the proved bound, or a witness of instability; None where it decides nothing.
+    name: str  # Name of the kind in a few words, for a table
+    meaning: tuple[str, ...]  # Meaning of the claim, its assumptions and its decision
+    limits: tuple[str, ...]  # Limits of the claim
+    # Run below the proved bound, or a witness of instability; None without a decision.
     run: Callable[[], Section] | None = None
     sections: Callable[[], tuple[Section, ...]] = tuple  # The numbers in tables
     changing: str = "however fast they change"  # Which values between corners are covered
@@ -43,13 +43,13 @@ class Form:
 
 @dataclass(frozen=True)
 class Offer:
-    """What a page can show of some evidence, whatever its kind."""
+    """Content of evidence for a page, of any kind."""
 
     forms: tuple[Form, ...] = ()
     denominator_log2: int = 0  # of all forms
     leaving: tuple[str, ...] = ()  # modes that must be left, in which a form may grow
     weights: tuple[tuple[str, Fraction], ...] = ()  # of modes, with sum one
-    # Of a closed sequence along which some state does not decay:
+    # Closed sequence along which some state does not decay:
     steps: tuple[tuple[str, Fraction], ...] = ()  # mode, and time in it in s (or steps)
     edges: tuple[int, ...] = ()  # which reset each switch takes; empty: no choice
     factor: Fraction | None = None  # lower bound of the growth per sequence, signs of contact kept
@@ -59,7 +59,7 @@ class Offer:
 
 
 def offer_of(evidence: AbstractEvidence) -> Offer:
-    """Return what some evidence offers; nothing for a kind that is not in the table."""
+    """Return the content of evidence; an empty offer for an unknown kind."""
     read = OFFERS.get(evidence.kind)
     return Offer() if read is None else read(evidence)
 
@@ -116,7 +116,7 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,
     "no-common-quadratic": _traces,
-    # Its form is of the state behind a one, and not positive: nothing to draw.
+    # The form acts on (1, state) and is indefinite: nothing to draw.
     "offset-ellipsoid": lambda e: Offer(),
     "saturated-ellipsoid": _one,
 }

@@ -1,20 +1,21 @@
-"""Adversarial runs: below a proved bound, beside a proved rate, or without either."""
+"""Adversarial runs with a proved bound, with a proved rate, or without a proof."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from sys import float_info
 
 import numpy as np
 
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.words import allowed
-from nrs_design.reporting.figures.run import draw_phase_plane, draw_run
+from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.greedy import greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
@@ -23,13 +24,13 @@ from nrs_design.simulation.switched import SwitchedRun, all_modes, alone, fine_s
 
 Bound = tuple[str, Array]
 
-# The bound falls by e^7, three decades, where that takes no more steps than are drawn.
+# A run lasts until the bound has fallen by e^7, three decades, or has _STEPS steps.
 _DECAY = 7.0
 _STEPS = 4000
 _FEWEST = 500
-# Below this fraction of the start the run is cut: the rest would squeeze the bound flat.
+# A run ends below this fraction of the start: a longer axis would flatten the bound.
 _SMALL = 1e-6
-# Modes times squared states that a run of so many steps can try in about a second.
+# Modes times squared states that a run evaluates in about a second.
 _EFFORT = 200_000
 _UNKNOWN_STEPS = 600
 # A run that keeps rules tries every allowed switch at every step.
@@ -40,22 +41,9 @@ _FIRST = 20
 # States in contact that a run of rounds may begin at.
 _DIRECTIONS = 200
 
-_NOT_WORST = "It is a bad run, not the worst one."
-GREEDY = (
-    "Simulated run from the slowest direction: at every step the adversary takes the mode after "
-    f"which the norm is largest. {_NOT_WORST}"
-)
-RULED = (
-    "Simulated run that keeps the declared rules: at every step the adversary stays, or takes a "
-    f"mode that may follow, after which the norm of that mode is largest. {_NOT_WORST}"
-)
-_BOUNCING = (
-    "Simulated run from the slowest direction in contact: at every step the adversary takes the "
-    f"possible mode after which the norm is largest. {_NOT_WORST}"
-)
-_ROUNDS = (
-    "Simulated run: at every step the adversary takes the mode, of those that may be in force and "
-    f"that contact allows, after which the norm of that step is largest. {_NOT_WORST}"
+_GREEDY = (
+    "Simulated run: at every step the adversary takes the mode, of those that may be in force, "
+    "after which the norm is largest. It is a bad run, not the worst one."
 )
 _HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
 _SLOPE = (
@@ -71,58 +59,15 @@ _ACTIVE = (
 )
 _RISES = " In a mode that must be left it may rise above the bound; at the next switch it is below."
 _SECTION = "Simulated switching"
-_BAD = "One bad run"
+_UNBOUNDED = "One bad run"
 _UNPROVED = (
     "There is no bound: nothing is proved. Decay in this run is no sign of stability, and growth "
     "over a short time is no proof of instability."
 )
-_UNPROVED_ROUNDS = (
-    "Simulated run in kept contact from a deflection: at every step the adversary takes the mode, "
-    "of those that may be in force, after which the Euclidean norm is largest. There is no bound: "
-    "nothing is proved."
-)
 EUCLIDEAN = "|x(t)| / |x(0)|\nEuclidean norm [1]"
-AGAINST = "Switching against the proved bound"
-BESIDE = "Switching beside the proved rate"
-_BOUND = "proved bound, "
-_PLANE = "The same run in the plane of the two states"
-_PATH = (
-    "Path of the state, one color for each active mode. The axes are the two states themselves, no "
-    "projection. A reset is drawn with the step before it. Dashed, if it is proved: level curves "
-    "of V. The path cannot leave that of all modes; the V of one mode decreases while that mode is "
-    "active, unless the mode must be left."
-)
-
-
-def simulated(*blocks: Illustration) -> Section:
-    """Return the section of a run that no evidence of instability asks for."""
-    return Section(_SECTION, blocks)
-
-
-def run_figures(
-    title: str,
-    caption: str,
-    response: SwitchedRun,
-    values: Array,
-    system: SwitchedSystem,
-    label: str = EUCLIDEAN,
-    bound: Bound | None = None,
-    *,
-    norms: Mapping[str, Norm] | None = None,
-    deflection: str = "",
-) -> tuple[Illustration, ...]:
-    """Draw a norm along a run, and where the system has two states, the path of the run.
-
-    The path is among level curves of norms by mode, or of one for all by no name; where contact may
-    be lost, or modes take turns, it is left out.
-    """
-    figure = draw_run(response, values, bound, system, label, deflection)
-    run = Illustration("run", title, caption, figure)
-    flat = system.order == 2 and system.is_uniform and not deflection and system.clock is None
-    if not flat:
-        return (run,)
-    path = draw_phase_plane(response, system, norms or {})
-    return run, Illustration("phase-plane", _PLANE, _PATH, path)
+_AGAINST = "Switching against the proved bound"
+_BESIDE = "Switching beside the proved rate"
+BOUND = "proved bound, "
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,44 +76,46 @@ class Greedy:
 
     system: SwitchedSystem  # All modes, for the caption
     played: SwitchedSystem  # Modes that take part; without `contact` where it is kept
-    norms: Norm | Sequence[Norm]  # With a clock, one for each step of a round
+    norms: Norm | Sequence[Norm]  # A norm, or a norm for each clock state or mode
     initial: Array  # Shape (n,)
     rate: float | None = None  # Sets the length of the run; None for a fixed length
 
-    def draw(self, title: str, caption: str, label: str, line: str = "") -> Section:
+    def draw(self, text: str, label: str, line: str = "") -> Section:
         """Return the section of the run.
 
-        `line` says which line has the rate, such as ``proved bound,``; empty for none.
+        `line` says which line has the rate, such as ``proved bound, ``; empty for none.
         """
         system, rate, norms = all_modes(self.played), self.rate, self.norms
-        step, steps = horizon(system, rate) if rate else (fine_step(system), _UNKNOWN_STEPS)
+        step, steps = horizon(system, rate)
         response = greedy_run(self.played, norms, self.initial, step, steps)
         if rate:
             response = until_small(response, relative_norms(response, norms))
         values = relative_norms(response, norms)
         bound = bound_line(response, rate, system.time, line) if rate and line else None
-        # Switching freely is more than declared rules allow.
-        if not self.system.switching.is_arbitrary:
+        caption = f"{_GREEDY} {text}"
+        if system.switching.is_arbitrary and not self.system.switching.is_arbitrary:
             caption += " The run switches freely, which is more than the spec allows."
-        caption += some_modes(self.system, self.played)
+        if len(self.played.modes) < len(self.system.modes):
+            caption += f" Only the {len(self.played.modes)} slowest modes take part."
         deflection = "" if self.played.contact is None else system.states[-1]
-        inside = {"": norms} if callable(norms) and line == _BOUND else {}
-        shown = (response, values, system, label, bound)
-        return simulated(*run_figures(title, caption, *shown, norms=inside, deflection=deflection))
+        title = {"": _UNBOUNDED, BOUND: _AGAINST}.get(line, _BESIDE)
+        figure = draw_run(response, values, bound, system, label, deflection)
+        return Section(_SECTION, (Illustration("run", title, caption, figure),))
 
 
 def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
     """Draw a greedy run below its bound; say in which norm."""
     played = greedy.played
-    how, letter = GREEDY, "x"
-    if played.clock is not None:
-        how, letter = _ROUNDS, "w"
-    elif played.contact is not None:
-        how, letter = _BOUNCING, "w"
+    letter = "x" if played.clock is None and played.contact is None else "w"
     lost = " and any loss of contact" if played.contact is not None else ""
-    holds = f"{_HOLDS}{lost}{allowed(played)}."
-    said = " ".join(text for text in (how, note, holds) if text)
-    return greedy.draw(AGAINST, said, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", _BOUND)
+    text = f"{note}{_HOLDS}{lost}{allowed(played)}."
+    return greedy.draw(text, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", BOUND)
+
+
+def freely_switched(system: SwitchedSystem, Q: Array | None, limit: int) -> SwitchedSystem:
+    """Return the slowest modes of a system, in kept contact, to be switched freely."""
+    switching = system.switching if system.clock is not None else ARBITRARY
+    return replace(hardest_modes(system, Q, limit), contact=None, switching=switching)
 
 
 def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:
@@ -180,73 +127,53 @@ def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:
 
 
 def ruled_run(
-    system: SwitchedSystem, forms: Sequence[Form], rate: float, *, leaving: bool
+    system: SwitchedSystem,
+    forms: Sequence[Form] = (),
+    rate: float | None = None,
+    *,
+    leaving: bool = False,
 ) -> Section:
-    """Draw a run that keeps the declared rules, below its bound or beside its slope.
+    """Draw a run that obeys the declared rules, with its bound or slope if proved.
 
     In the norms of the forms if each mode has a quadratic one, else in the Euclidean. `leaving`:
     some modes must be left, in which a form may grow.
     """
-    names = {form.name for form in forms}
-    single = forms[0].degree == 1 and len(forms) == len(names)  # No form remembers steps
-    of_modes = single and names >= {mode.name for mode in system.modes}
-    title, said, label, line = BESIDE, _SLOPE, EUCLIDEAN, "slope of the proved bound, "
-    functions: dict[str, Array] = {}
-    if of_modes:
-        title, said, line = AGAINST, _ACTIVE + _RISES * leaving, _BOUND
-        label = "Root of V of the active mode [1]"
-        matrices = scaled_matrices(*(form.Q for form in forms))
-        functions = {form.name: Q for form, Q in zip(forms, matrices, strict=True)}
-    return _kept_to_rules(system, functions, (title, f"{RULED} {said}", label), rate, line)
-
-
-def _kept_to_rules(
-    system: SwitchedSystem,
-    functions: Mapping[str, Array],
-    words: tuple[str, str, str],
-    rate: float | None = None,
-    line: str = "",
-) -> Section:
-    """Draw a greedy run that keeps the rules, in norms by mode, or the Euclidean one without.
-
-    Title, caption and label are given.
-    """
-    title, caption, label = words
-    hardest = replace(hardest_modes(system, None, _RULED_MODES), contact=None)
-    if not hardest.is_uniform:
+    played = replace(hardest_modes(system, None, _RULED_MODES), contact=None)
+    if not played.is_uniform:
         return Section(_SECTION, (Paragraph("No run is drawn: modes differ in size."),))
-    Qs = [functions.get(mode.name, np.eye(system.order)) for mode in hardest.modes]
+    # A form of several steps is of no mode alone.
+    alike = {form.name: form for form in forms if form.degree == 1}
+    quadratic = len(alike) == len(forms) and alike.keys() >= {mode.name for mode in system.modes}
+    matrices = scaled_matrices(*(form.Q for form in alike.values())) if quadratic else []
+    functions = dict(zip(alike, matrices, strict=False))
+    text, label, line = _UNPROVED, EUCLIDEAN, ""
+    if rate:
+        text, line = _SLOPE, "slope of the proved bound, "
+    if quadratic:
+        text, line, label = _ACTIVE + _RISES * leaving, BOUND, "Root of V of the active mode [1]"
+    Qs = [functions.get(mode.name, np.eye(system.order)) for mode in played.modes]
     norms = [quadratic_norm(Q) for Q in Qs]
-    step, steps = horizon(hardest, rate) if rate else (fine_step(hardest), _UNKNOWN_STEPS)
+    directions = [worst_direction(alone(played, k), Q) for k, Q in enumerate(Qs)]
     try:
-        step = fitting_step(hardest, step)
-        directions = [worst_direction(alone(hardest, k), Q) for k, Q in enumerate(Qs)]
-        initial = slowest(hardest, norms, directions, step, _FIRST)
-        response = greedy_run(hardest, norms, initial, step, min(steps, _RULED_STEPS))
+        step, _ = horizon(played, rate)
+        initial = slowest(played, norms, directions, step, _FIRST)
+        return Greedy(system, played, norms, initial, rate).draw(text, label, line)
     except ValueError as error:
         return Section(_SECTION, (Paragraph(f"No run is drawn: {error}."),))
-    values = relative_norms(response, norms)
-    if rate:
-        response = until_small(response, values)
-        values = values[: len(response.time)]
-    bound = bound_line(response, rate, system.time, line) if rate else None
-    shown = (response, values, hardest, label, bound)
-    inside = {name: quadratic_norm(Q) for name, Q in functions.items()}
-    caption += some_modes(system, hardest)
-    return Section(_SECTION, run_figures(title, caption, *shown, norms=inside))
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
-    """Draw an adversarial run of a system about which nothing is proved."""
-    identity, kept = np.eye(system.order), replace(system, contact=None)
-    if system.clock is not None:
-        norms = [quadratic_norm(identity)] * system.clock.length
-        return Greedy(kept, kept, norms, identity[-1]).draw(_BAD, _UNPROVED_ROUNDS, EUCLIDEAN)
-    if system.switching.is_arbitrary:
-        hardest = hardest_modes(kept, None, trials_per_step(system))
-        greedy = Greedy(kept, hardest, quadratic_norm(identity), worst_direction(hardest, identity))
-        return greedy.draw(_BAD, f"{GREEDY} {_UNPROVED}", EUCLIDEAN)
-    return _kept_to_rules(kept, {}, (_BAD, f"{RULED} {_UNPROVED}", EUCLIDEAN))
+    """Draw an adversarial run of a system without a proof."""
+    if system.clock is None and not system.switching.is_arbitrary:
+        return ruled_run(system)
+    identity, played = np.eye(system.order), freely_switched(system, None, trials_per_step(system))
+    norm, initial = quadratic_norm(identity), identity[-1]
+    if system.clock is None:
+        return Greedy(system, played, norm, worst_direction(played, identity)).draw(
+            _UNPROVED, EUCLIDEAN
+        )
+    kept = replace(system, contact=None)
+    return Greedy(kept, kept, [norm] * system.clock.length, initial).draw(_UNPROVED, EUCLIDEAN)
 
 
 def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:
@@ -272,21 +199,20 @@ def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
     return SwitchedRun(response.time[: end + 1], states, response.mode[:end], turn)
 
 
-def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
-    """Return step and number of steps in which the bound falls by three decades, if few enough."""
-    rate = claimed if system.time is Time.CONTINUOUS else -math.log(claimed)
-    # A contraction of 1 - 1e-21 is 1 in floating point.
-    rate = max(rate, float_info.min)
-    step = fine_step(system)
-    steps = math.ceil(min(_DECAY / (rate * step), float(_STEPS)))
-    if system.time is Time.CONTINUOUS and steps < _FEWEST:
-        steps = _FEWEST
-        step = _DECAY / rate / steps
+def horizon(system: SwitchedSystem, rate: float | None) -> tuple[float, int]:
+    """Return step and number of steps of a run; where switches are ruled, the step fits the rules.
+
+    A bound falls by three decades in them, if they are few enough.
+    """
+    step, steps = fine_step(system), _UNKNOWN_STEPS
+    if rate:
+        decay = rate if system.time is Time.CONTINUOUS else -math.log(rate)
+        # A contraction of 1 - 1e-21 is 1 in floating point.
+        decay = max(decay, float_info.min)
+        steps = math.ceil(min(_DECAY / (decay * step), float(_STEPS)))
+        if system.time is Time.CONTINUOUS and steps < _FEWEST:
+            steps = _FEWEST
+            step = _DECAY / decay / steps
+    if system.clock is None and not system.switching.is_arbitrary:
+        step, steps = fitting_step(system, step), min(steps, _RULED_STEPS)
     return step, max(steps, 10)
-
-
-def some_modes(system: SwitchedSystem, hardest: SwitchedSystem) -> str:
-    """Say how many modes take part, if not all."""
-    if len(hardest.modes) == len(system.modes):
-        return ""
-    return f" Only the {len(hardest.modes)} slowest modes take part."

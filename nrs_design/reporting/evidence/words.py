@@ -1,4 +1,4 @@
-"""Sentences about proofs: what a bound means, on what it rests, how it was decided."""
+"""Sentences about proofs: meaning of a bound, assumptions and decision."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def allowed(system: SwitchedSystem) -> str:
 
 
 def ruled_bound(system: SwitchedSystem) -> str:
-    """Say what a bound means that rests on the declared rules of switching."""
+    """State the meaning of a bound under the declared rules of switching."""
     return (
         "The bound means: for every signal that keeps the rules, the distance from rest "
         f"shrinks by the factor {decay_factor(system)}, up to one constant c in front. So it may "
@@ -75,7 +75,7 @@ def ruled_bound(system: SwitchedSystem) -> str:
 
 
 def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
-    """Say which rules of switching, and which modes to leave, a claim rests on."""
+    """State the rules of switching and longest stays that the claim assumes."""
     switching = system.switching
     if switching.dwell_time > 0:
         yield (
@@ -119,7 +119,7 @@ def unneeded_rules(system: SwitchedSystem) -> Iterator[str]:
 
 
 def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
-    """Say which signals a proof that rests on rules does not cover."""
+    """Name the signals that a proof under rules does not cover."""
     switching = system.switching
     if switching.dwell_time > 0:
         yield f"Switching earlier than {_dwell(system)} after the last switch."
@@ -150,7 +150,7 @@ def all_corners(system: SwitchedSystem, evidence: AbstractEvidence, how: str) ->
         f"well, {how}."
     )
     if system.roundings:
-        # Of a sampled loop, which has exponentials of the motor's numbers.
+        # A sampled loop has matrix exponentials of the motor constants.
         text = (
             "The modes are the corners of what encloses the declared parameter ranges. The "
             "matrices are affine in each parameter, in exponentials of the motor's together, so "
@@ -176,7 +176,7 @@ def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]
 
 
 def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
-    """Say what a proof with functions leaves open; `lost`: they cover the loss of contact."""
+    """State limits of a proof with functions; `lost`: they cover the loss of contact."""
     if lost or system.clock is not None:
         yield _MOVED_REST
     if system.clock is not None and system.clock.counts_stays:

@@ -1,8 +1,8 @@
-"""Simulated switching: the norm under its bound, signals between bounds, the phase plane."""
+"""Simulated switching: the norm under its bound, and the active mode."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,23 +10,17 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.formatting import wrapped_label
 from nrs_design.reporting.style import (
     BLUE,
-    CYCLE,
-    DASHES,
-    GREEN,
     INK,
     MUTED,
     VERMILLION,
     color,
     legend,
-    new_axes,
     new_figure,
     row_labels,
     styled,
 )
-from nrs_design.simulation.norms import Norm, level_curve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,42 +84,6 @@ def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
     axes.set_title(f"{name.partition(' [')[0]}; shaded: no contact", loc="left", fontsize=9.5)
 
 
-@styled
-def draw_phase_plane(
-    response: SwitchedRun, system: SwitchedSystem, norms: Mapping[str, Norm]
-) -> Figure:
-    """Draw a run of a system with two states among level curves, all at the value of the start.
-
-    Norms, roots of Lyapunov functions, are by mode, or one for all modes by no name.
-    """
-    figure, axes = new_axes(4.5)
-    # In discrete time only the points are states; the lines lead from one to the next.
-    shape = "o" if system.time is Time.DISCRETE else "None"
-    groups = groups_of(response, _names(system))
-    for row, group in enumerate(groups):
-        dashes = DASHES[row // len(CYCLE) % len(DASHES)]
-        label = f"mode {group.name}" if len(group.modes) == 1 else group.name
-        path = _path_in(response, group.modes)
-        axes.plot(
-            *path.T, marker=shape, linestyle=dashes, color=group.tint, markersize=3, label=label
-        )
-    first, tints = system.modes[int(response.mode[0])].name, {g.name: g.tint for g in groups}
-    shown = {name: norm for name, norm in norms.items() if not name or name in tints}
-    start = float(norms.get(first, norms.get("", np.linalg.norm))(response.state[0]))
-    for name, norm in shown.items():
-        tint, label = tints.get(name, VERMILLION), f"level of V{name and f', {name}'}"
-        axes.plot(*level_curve(norm, start), "--", color=tint, linewidth=1.2, label=label)
-    axes.plot(*response.state[0], "o", color=INK, label="start")
-    axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    x, y = (
-        f"State {wrapped_label(name, 40)}{'' if '[' in name else ' [no unit given]'}"
-        for name in system.states
-    )
-    axes.set(xlabel=x, ylabel=y)
-    legend(figure, axes, 3)
-    return figure
-
-
 @dataclass(frozen=True)
 class Group:
     """Modes that are drawn alike: one, or all that there is no room for."""
@@ -135,7 +93,7 @@ class Group:
     tint: str
 
 
-def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) -> list[Group]:
+def groups_of(response: SwitchedRun, names: Sequence[str]) -> list[Group]:
     """Return the modes of a run in the order of their first use, the last ones together.
 
     Of many, those with one controller and contact are one: a reader asks for these, not for
@@ -151,7 +109,7 @@ def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) ->
                 Group(name if len(modes) == 1 else f"{name}: {len(modes)}", tuple(modes), color(i))
                 for i, (name, modes) in enumerate(alike.items())
             ]
-    single = used if len(used) <= most else used[: most - 1]
+    single = used if len(used) <= _ROWS else used[: _ROWS - 1]
     groups = [Group(names[m], (m,), color(i)) for i, m in enumerate(single)]
     if len(used) > len(single):
         rest = tuple(used[len(single) :])
@@ -182,69 +140,3 @@ def draw_modes(
     axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_title("Active mode", loc="left", fontsize=9.5)
     axes.grid(visible=False, axis="y")
-
-
-def _path_in(response: SwitchedRun, modes: tuple[int, ...]) -> Array:
-    """Return the states with every step of another mode cut out by NaN."""
-    ends = response.state[1:].copy()
-    begins = response.state[:-1].copy()
-    inside = np.isin(response.mode, modes)
-    ends[~inside], begins[~inside] = np.nan, np.nan
-    gaps = np.full_like(begins, np.nan)
-    gaps[:-1][inside[1:]] = begins[1:][inside[1:]]
-    return np.stack([begins, ends, gaps], axis=1).reshape(-1, 2)
-
-
-# A bound that is so many times higher than all else would squeeze the run flat.
-_HIGHEST = 4.0
-_FEW_ROWS = 10
-
-
-@dataclass(frozen=True, eq=False)
-class BoundedSignal:
-    """One quantity over time."""
-
-    label: str  # With its unit
-    values: Array  # Shape (N + 1, r). For every row of it.
-    limit: float | None  # Of the spec
-    bound: Array | None  # Shape (N + 1,). Certified.
-    one_sided: bool = False  # Nothing bounds negative values
-
-
-@styled
-def draw_bounded_run(
-    response: SwitchedRun, panels: Sequence[BoundedSignal], names: Sequence[str], unit: str = "s"
-) -> Figure:
-    """Draw all panels over one time axis, and below them the mode that is active."""
-    groups = groups_of(response, names, _FEW_ROWS)
-    labels, height = row_labels([group.name for group in groups])
-    rows = height * len(groups)
-    figure = new_figure(1.9 * len(panels) + 0.8 + rows)
-    ratios = [*([1.9] * len(panels)), rows]
-    *above, below = figure.subplots(len(panels) + 1, 1, sharex=True, height_ratios=ratios)
-    for axes, panel in zip(above, panels, strict=True):
-        _draw_panel(axes, response.time, panel)
-    draw_modes(below, response, groups, labels)
-    below.set_xlabel(f"Time [{unit}]")
-    legend(figure, above[0], 2)
-    return figure
-
-
-def _draw_panel(axes: Axes, time: Array, panel: BoundedSignal) -> None:
-    low, high = panel.values.min(axis=1), panel.values.max(axis=1)
-    if panel.values.shape[1] > 1:
-        axes.fill_between(time, low, high, color=BLUE, alpha=0.25, label="over the contact's range")
-    middle = panel.values[:, np.abs(panel.values).max(axis=0).argmax()]
-    axes.plot(time, middle, color=BLUE, label="simulated run")
-    axes.axhline(0.0, color=MUTED, linewidth=0.8)
-    top = max(float(np.abs(panel.values).max()), panel.limit or 0.0)
-    if panel.limit is not None:
-        for sign in (1.0, -1.0):
-            label = "limit of the spec" if sign > 0 else None
-            axes.axhline(sign * panel.limit, color=GREEN, linestyle=":", label=label)
-    if panel.bound is not None:
-        for sign in (1.0,) if panel.one_sided else (1.0, -1.0):
-            label = "certified bound" if sign > 0 else None
-            axes.plot(time, sign * panel.bound, color=VERMILLION, linestyle="--", label=label)
-        top = max(top, min(float(panel.bound.max()), _HIGHEST * top))
-    axes.set(ylim=(-1.08 * top, 1.08 * top), ylabel=panel.label)

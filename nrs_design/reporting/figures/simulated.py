@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,8 +35,6 @@ if TYPE_CHECKING:
 
 # A bound beyond so many times the largest torque is named at the edge, not drawn to scale.
 _FAR = 4.0
-# Two points from each of so many parts of a curve are drawn: its least and its largest value.
-_PARTS = 400
 _FIRST: dict[str, Any] = {"color": BLUE, "lw": 1.6}
 _SECOND: dict[str, Any] = {"color": INK, "lw": 1.2, "linestyle": (0, (6, 2, 1.5, 2))}
 _LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
@@ -69,7 +68,8 @@ def draw_simulated(
     With a lever arm in m the deflection is in mm, else in deg. A bound on the torque in N m comes
     with whether it is about this run.
     """
-    torque = response["torque"]
+    torque, deg = response["torque"], current().fine
+    scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     signs = (1, -1) if bool((torque < -0.01 * torque_limit).any()) else (1,)
     title, about = "", "certified bound"
     bounds: tuple[float, ...] = ()
@@ -80,8 +80,6 @@ def draw_simulated(
             title = f"{about} {upper(Fraction(level), 4)} {unit('N m')}, beyond this scale"
         else:
             bounds = tuple(sign * level for sign in signs)
-    deg = current().fine
-    scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     fastest = deg * velocity_limit
     speeds = {"of the axis": deg * response["velocity"], "commanded": deg * response["hand"]}
     limits = tuple(sign * torque_limit for sign in signs)
@@ -90,15 +88,18 @@ def draw_simulated(
         Panel(f"Deflection [{length}]", {"deflection": scale * response["depth"]}),
         Panel(labelled("Velocity [deg/s]"), speeds, (fastest, -fastest)),
     )
-    return draw_panels(response.t, panels, [*_stays(response)], title)
+    return draw_panels(response.t, panels, [*iterate_stays(response.t, response.active)], title)
 
 
-def _stays(response: TimeResponse) -> Iterator[tuple[float, float, str]]:
-    """Yield begin and end of every stay, and the controller."""
-    changes = (np.flatnonzero(np.diff(response.mode)) + 1).tolist()
-    for start, end in zip([0, *changes], [*changes, len(response) - 1], strict=True):
-        name = response.modes[int(response.mode[start])]
-        yield float(response.t[start]), float(response.t[end]), name
+def iterate_stays(
+    t: NDArray[np.float64], active: Sequence[str]
+) -> Iterator[tuple[float, float, str]]:
+    """Yield begin and end of every stay, and the name that is active from one time to the next."""
+    begin = 0
+    for name, steps in groupby(active):
+        end = begin + len(list(steps))
+        yield float(t[begin]), float(t[min(end, len(t) - 1)]), name
+        begin = end
 
 
 @styled
@@ -130,27 +131,14 @@ def _draw_panel(
     axes: Axes, t: NDArray[np.float64], panel: Panel, handles: dict[str, Artist]
 ) -> None:
     for look, (name, y) in zip((_FIRST, _SECOND), panel.curves.items(), strict=False):
-        (line,) = axes.plot(*_thinned(t, y), label=name, **look)
+        (line,) = axes.plot(t, y, label=name, **look)
         # What stands alone is named by its axis.
         if len(panel.curves) > 1:
             handles.setdefault(name, line)
-    for level in panel.limits:
-        handles.setdefault("limit of the spec", axes.axhline(level, **_LIMIT))
-    for level in panel.bounds:
-        handles.setdefault(panel.bound, axes.axhline(level, **_BOUND))
-
-
-def _thinned(
-    t: NDArray[np.float64], y: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Thin a curve, keeping the least and the largest value of each part."""
-    if len(t) <= 2 * _PARTS:
-        return t, y
-    kept = {0, len(t) - 1}
-    for part in np.array_split(np.arange(len(t)), _PARTS):
-        kept |= {int(part[y[part].argmin()]), int(part[y[part].argmax()])}
-    picked = np.array(sorted(kept))
-    return t[picked], y[picked]
+    lines = [(level, "limit of the spec", _LIMIT) for level in panel.limits]
+    lines += [(level, panel.bound, _BOUND) for level in panel.bounds]
+    for level, label, look in lines:
+        handles.setdefault(label, axes.axhline(level, label=label, **look))
 
 
 def _shade(

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from nrs_design.axis import unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
-from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.impedance import CURVES, by_controller, impedance_section
-from nrs_design.reporting.sections.places import At, linked
+from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.titles import MOTION
-from nrs_design.reporting.sections.torque import torque_section
+from nrs_design.reporting.sections.torque import torque_blocks
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -38,6 +38,12 @@ _NO_OFFSET = (
 )
 
 
+_UNSTABLE = (
+    "What the gains achieve is not shown: poles and margins exist only where the nominal loops are "
+    "stable."
+)
+_MOTION = ("motion_loop",)
+_NATURAL = "Natural frequency [rad/s]"
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     (
@@ -47,7 +53,7 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.stiffness, 6)),
     ("Closed-loop poles [rad/s]", lambda item: roots(item.loop.poles)),
     ("Damping ratio [1]", lambda item: number(item.loop.damping_ratio)),
-    ("Natural frequency [rad/s]", lambda item: number(item.loop.natural_frequency)),
+    (_NATURAL, lambda item: number(item.loop.natural_frequency)),
     ("Offset X_i", lambda item: item.approach.offset),
     ("Steady error over command [1]", lambda item: number(item.steady_error)),
     ("Peak torque [N·m]", lambda item: "–" if item.peak is None else number(item.peak)),
@@ -56,21 +62,18 @@ _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
 
 def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tuple[Section, ...]:
     """Describe a design; without an analysis only its gains."""
-    gains = Section("Designed gains", (_gain_table(designed),))
+    gains = [_gain_table(designed)]
     if analysis is None:
-        text = (
-            "What the gains achieve is not shown: poles and margins exist only where the nominal "
-            "loops are stable."
-        )
-        return (Section("Designed gains", (*gains.blocks, Paragraph(text))),)
-    parts = [gains, _motion_section(designed, analysis)]
+        return (Section("Designed gains", (*gains, Paragraph(_UNSTABLE))),)
+    parts = [Section("Designed gains", tuple(gains)), _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(impedance_section(designed, analysis.impedance))
     if analysis.force:
         loci = (_force_locus(item) for item in analysis.force[:CURVES])
         parts.append(Section("Force control", (*force_blocks(designed, analysis), *loci)))
     if analysis.torque:
-        parts.append(torque_section(designed.loaded, analysis))
+        title = "Impedance by torques"
+        parts.append(Section(title, torque_blocks(designed.loaded, analysis)))
     return tuple(parts)
 
 
@@ -79,34 +82,20 @@ def _gain_table(designed: Designed) -> Table:
     for name, law in design.laws.items():
         for gain, value in law.gains.items():
             unit = design.units[name][gain].replace("*", "·").replace("^2", "²")
-            said = _said(designed, name, gain)
-            rows.append(
-                (name, gain, said(number(float(value), 6)), unit, said(exact_decimal(value)))
-            )
+            at = ("controllers", name, gain) if name in designed.spec.controllers else _MOTION
+            texts = (number(float(value), 6), exact_decimal(value))
+            shown, exact = (linked(designed.loaded, text, *at) for text in texts)
+            rows.append((name, gain, shown, unit, exact))
         if not law.gains:
             rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
     return Table("Gains of one axis", columns, tuple(rows))
 
 
-# Where a spec may give the gains of the motion loop, or what they follow from.
-_MOTION_KEYS = {"Kd": "derivative_gain", "Kp": "zero"}
-
-
-def _said(designed: Designed, controller: str, gain: str) -> Callable[[str], str]:
-    """Return what links a text to the line of the spec that a gain comes from."""
-    if controller in designed.spec.controllers:
-        place = designed.loaded.place("controllers", controller, gain)
-    else:
-        place = designed.loaded.place("motion_loop", _MOTION_KEYS.get(gain, gain))
-    return lambda text: Linked(text, place.line)
-
-
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
-    blocks = motion_blocks(designed, analysis)
-    if (wanted := analysis.wanted) is None:
-        return Section(MOTION, blocks)
-    return Section(MOTION, (*blocks, _motion_locus(designed, analysis, wanted)))
+    wanted, blocks = analysis.wanted, motion_blocks(designed, analysis)
+    loci = () if wanted is None else (_motion_locus(designed, analysis, wanted),)
+    return Section(MOTION, (*blocks, *loci))
 
 
 def motion_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
@@ -148,20 +137,15 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
 
 
 def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Table:
-    design = designed.design
-    reached, motion = analysis.reached, design.motion
+    reached, motion, command = analysis.reached, designed.design.motion, designed.design.command
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
-    per, Kp = unit("rad"), wanted.derivative_gain * wanted.zero
+    per, six = unit("rad"), partial(number, digits=6)
+    Kd, zero, omega = wanted.derivative_gain, wanted.zero, wanted.natural_frequency
     # The key of the spec that says most of a row, its label, and what is wanted and reached.
     rows = (
-        (
-            "derivative_gain",
-            f"Kd [{design.command}·s/{per}]",
-            number(wanted.derivative_gain, 6),
-            number(float(motion.Kd), 6),
-        ),
-        ("zero", "Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
-        ("zero", f"Kp [{design.command}/{per}]", number(Kp, 6), number(float(motion.Kp), 6)),
+        ("derivative_gain", f"Kd [{command}·s/{per}]", six(Kd), six(float(motion.Kd))),
+        ("zero", "Zero Kp/Kd [1/s]", six(zero), six(float(motion.zero))),
+        ("zero", f"Kp [{command}/{per}]", six(Kd * zero), six(float(motion.Kp))),
         (
             "settling_time",
             "Poles [rad/s]",
@@ -169,12 +153,7 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
             roots(reached.poles, 5),
         ),
         ("damping_ratio", "Damping ratio [1]", number(damping), number(reached.damping_ratio)),
-        (
-            "settling_time",
-            "Natural frequency [rad/s]",
-            number(wanted.natural_frequency),
-            number(reached.natural_frequency),
-        ),
+        ("settling_time", _NATURAL, number(omega), number(reached.natural_frequency)),
         ("damping_ratio", "Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
         ("settling_time", "Bandwidth [rad/s]", "–", number(reached.bandwidth)),
     )
@@ -205,23 +184,14 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
 
 def force_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
     """Say what the force controllers achieve at nominal values."""
-    title = "Force controllers, at nominal values"
-    place = partial(_force_at, designed)
-    tables = by_controller(designed.loaded, title, _FORCE_ROWS, analysis.force, place)
-    texts = [Paragraph(_NOMINAL)]
-    if any(item.peak is not None for item in analysis.force):
-        texts.append(Paragraph(_OFFSET))
-    if any(item.approach.offset == "none" for item in analysis.force):
-        texts.append(Paragraph(_NO_OFFSET))
-    return (*texts, *tables)
-
-
-def _force_at(designed: Designed, label: str, item: ForceAnalysis) -> At:
-    if label.startswith("Nominal stiffness"):
-        touched = designed.spec.controllers[item.name].environment
-        return ("environments", touched) if touched else ("environments",)
-    key = ("proportional_gain",) if label.startswith("Kp") else ()
-    return ("controllers", item.name, *key)
+    items, title = analysis.force, "Force controllers, at nominal values"
+    texts = {
+        _NOMINAL: True,
+        _OFFSET: any(item.peak is not None for item in items),
+        _NO_OFFSET: any(item.approach.offset == "none" for item in items),
+    }
+    said = (Paragraph(text) for text, applies in texts.items() if applies)
+    return (*said, *by_controller(designed.loaded, title, _FORCE_ROWS, items))
 
 
 def _force_locus(item: ForceAnalysis) -> Illustration:
@@ -234,9 +204,5 @@ def _force_locus(item: ForceAnalysis) -> Illustration:
         f"{unit('rad/(N·m)')}."
     )
     figure = draw_root_locus(open_loop, (), item.loop.poles)
-    return Illustration(
-        f"force-locus-{item.name}",
-        f"Root locus of the force loop: {item.name}",
-        caption,
-        figure,
-    )
+    title = f"Root locus of the force loop: {item.name}"
+    return Illustration(f"force-locus-{item.name}", title, caption, figure)

@@ -9,7 +9,7 @@ from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING, GoalStanding
 from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, State, Table
-from nrs_design.reporting.sections.places import contact_at, linked, with_line
+from nrs_design.reporting.sections.places import contact_at, linked
 from nrs_design.reporting.sections.titles import GOALS
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import OF_THE_CERTIFICATE
@@ -95,7 +95,7 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
         return
     yield Paragraph(" ".join(MEANING))
     yield Table("Goals and worst values", _COLUMNS, rows)
-    doubts = tuple(with_line(designed.loaded, str(doubt), *doubt.at) for doubt in analysis.warnings)
+    doubts = tuple(linked(designed.loaded, str(doubt), *doubt.at) for doubt in analysis.warnings)
     if doubts:
         yield Bullets("Warnings", doubts)
 

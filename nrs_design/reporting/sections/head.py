@@ -20,7 +20,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Bullets, Derived, Light, Paragraph, Section, State
+from nrs_design.reporting.document import Light, Linked, State
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.places import linked
@@ -42,9 +42,6 @@ from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
 
-# Labels and values.
-_Facts = list[tuple[str, str]]
-
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
@@ -62,15 +59,6 @@ def claim_of(certification: Certification) -> str:
     return certification.evidence.claim(certification.system)
 
 
-def remarks_of(certification: Certification) -> tuple[str, ...]:
-    """Return the claims of the other statements."""
-    return tuple(
-        statement.claim(certification.system)
-        for statement in certification.statements
-        if statement is not certification.evidence
-    )
-
-
 def facts(result: Result) -> tuple[tuple[str, str], ...]:
     """Return switching, hashes, versions and rates for the head of the report."""
     certification = result.certification
@@ -80,39 +68,38 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     where = certification.refuted_in
     return (
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
-        ("Switching", linked(result.loaded, switching_words(result), "switching")),
-        ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
+        ("Switching", linked(result.loaded, _switching(result), "switching")),
+        ("Switches among", Linked(f"{count}, in {system.time} time", section=MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
         # What is refuted although the verdict is inconclusive.
-        *(() if where is None else (("Refuted", Derived(where, MEANT)),)),
+        *(() if where is None else (("Refuted", Linked(where, section=MEANT)),)),
         (
             "Settled by",
-            Derived(certification.method if certification.evidence else "nothing", RUNGS),
+            Linked(certification.method if certification.evidence else "nothing", section=RUNGS),
         ),
-        *_rate(system, certification.evidence),
-        *_limit(certification),
+        *_rates(certification),
         *_provenance(result),
         ("Package", f"nrs-design {__version__}"),
-        ("SHA-256 of the spec", Derived(result.loaded.sha256, SPEC)),
+        ("SHA-256 of the spec", Linked(result.loaded.sha256, section=SPEC)),
         (
             "Certificate id",
-            Derived(result.certificate.id if result.certificate else "no certificate", RECHECK),
+            Linked(
+                result.certificate.id if result.certificate else "no certificate", section=RECHECK
+            ),
         ),
     )
 
 
-def switching_words(result: Result) -> str:
+def _switching(result: Result) -> str:
     """Say which switching signals the spec declares, in a few words."""
-    system = result.certification.system
-    switching = system.switching
-    spec = result.loaded.spec
+    system, spec = result.certification.system, result.loaded.spec
     assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
-    words = [str(spec.switching)]
-    if switching.resets:
-        words.append("the state is reset at some switches")
+    words = str(spec.switching)
+    if system.switching.resets:
+        words += "; the state is reset at some switches"
     if system.has_constants:
-        words.append(f"{constants_words(switching)}: unknown but constant")
-    return "; ".join(words)
+        words += f"; {constants_words(system.switching)}: unknown but constant"
+    return words
 
 
 def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fraction | None:
@@ -122,29 +109,24 @@ def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fr
     return evidence.proved_rate(system)
 
 
-def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> _Facts:
-    rate = proved_rate(system, evidence)
+def _rates(certification: Certification) -> Iterator[tuple[str, str]]:
+    """Yield the proved rate, and the bound on the rate that no proof can exceed."""
+    system, evidence = certification.system, certification.evidence
+    rate, limit = proved_rate(system, evidence), certification.rate_limit
     if evidence is None or rate is None:
-        return []
+        return
     constant = "" if evidence.attains_rate else ", not attained"
-    if not evidence.bounds_at_once:
-        constant += ", up to a constant factor"
+    constant += "" if evidence.bounds_at_once else ", up to a constant factor"
     label, text = "Proved contraction rho", at_most(rate, "per step")
     if system.time is Time.CONTINUOUS:
         label, text = "Proved decay rate alpha", at_least(rate, "1/s")
-    return [(label, Derived(f"{text.removeprefix('= ')}{constant}", EVIDENCE))]
-
-
-def _limit(certification: Certification) -> _Facts:
-    """Return the bound on the rate that no proof can exceed."""
-    limit, evidence = certification.rate_limit, certification.evidence
-    if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
-        return []
+    yield label, Linked(f"{text.removeprefix('= ')}{constant}", section=EVIDENCE)
+    if limit is None:
+        return
     label, text = "No proof can go below", f"{lower(Fraction(limit))} per step"
-    if certification.system.time is Time.CONTINUOUS:
+    if system.time is Time.CONTINUOUS:
         label, text = "No proof can exceed", f"{upper(Fraction(limit))} 1/s"
-    attained = ", which one solution attains (floating point)"
-    return [(label, Derived(f"{text}{attained}", MODES))]
+    yield label, Linked(f"{text}, which one solution attains (floating point)", section=MODES)
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:
@@ -273,31 +255,14 @@ def _open(result: Result) -> Light:
     return Light(ASSUMPTIONS, state, text, ASSUMPTIONS)
 
 
-TESTS = "What to test on the robot"
 # Digits that are read at a glance.
 _DIGITS = 4
 
 
 def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
     """Return labels and values for the head of the page, each on the safe side."""
-    return (
-        *_worst(analysis),
-        *_modes(result),
-        *_force(result),
-        *_gains(result),
-        *_achieved(analysis),
-    )
-
-
-def tests_section(result: Result) -> Section | None:
-    """List the open assumptions, each with its test; None where all are tested or argued."""
-    found = register_of(result.certification.granted, result.loaded.spec)
-    kinds = dict.fromkeys(item.kind for item in found if item.standing == "open")
-    tests = tuple(f"{kind.name}: {kind.test}" for kind in kinds if kind.id)
-    if not tests:
-        return None
-    text = f"{len(tests)} kinds of assumptions are neither tested nor argued. Each has a test:"
-    return Section(TESTS, (Paragraph(text), Bullets("", tests)))
+    design = (*_gains(result), *_achieved(analysis))
+    return (*_worst(analysis), *_modes(result), *_force(result), *design)
 
 
 def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
@@ -305,15 +270,14 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     doubts = () if analysis is None else analysis.warnings
     if doubts and doubts[0].beyond:
         more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
-        yield "Worst of it", Derived(f"{doubts[0]}{more}", GOALS)
+        yield "Worst of it", Linked(f"{doubts[0]}{more}", section=GOALS)
 
 
 def _modes(result: Result) -> Iterator[tuple[str, str]]:
-    if isinstance(result.loaded.spec, InteractionDesignSpec):
-        return
     system = result.certification.system
-    names = shortened([mode.name for mode in system.modes], 4)
-    yield "Modes", Derived(f"{names}; {system.time} time", MODES)
+    if not isinstance(result.loaded.spec, InteractionDesignSpec):
+        names = shortened([mode.name for mode in system.modes], 4)
+        yield "Modes", Linked(f"{names}; {system.time} time", section=MODES)
 
 
 def _force(result: Result) -> Iterator[tuple[str, str]]:
@@ -326,7 +290,7 @@ def _force(result: Result) -> Iterator[tuple[str, str]]:
     if bound is not None:
         size = f"{upper(bound.level, _DIGITS)} {bound.output.unit}"
         text = f"{size} at most, under the declared disturbances"
-    yield "Largest force", Derived(text, EVIDENCE)
+    yield "Largest force", Linked(text, section=EVIDENCE)
 
 
 def _gains(result: Result) -> Iterator[tuple[str, str]]:
@@ -340,7 +304,7 @@ def _gains(result: Result) -> Iterator[tuple[str, str]]:
             for gain, value in controller.law.gains.items()
         )
         if said:
-            yield f"Gains of {controller.name}", Derived(said, "Designed gains")
+            yield f"Gains of {controller.name}", Linked(said, section="Designed gains")
 
 
 def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
@@ -352,10 +316,10 @@ def _achieved(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
         arm = weakest.limit_at_arm
         limit, per = (weakest.lowest_limit, unit("N*m/rad")) if arm is None else (arm, "N/m")
         size = "any stiffness" if math.isinf(limit) else f"{lower(Fraction(limit), _DIGITS)} {per}"
-        yield "Stands up to", Derived(f"{size} ({weakest.name}; floating point)", GOALS)
+        yield "Stands up to", Linked(f"{size} ({weakest.name}; floating point)", section=GOALS)
     if [*_worst(analysis)]:
         return
     worst = max(analysis.impedance, key=lambda item: item.worst(SENSITIVITY_PEAK).value)
     value = SENSITIVITY_PEAK.text(worst.worst(SENSITIVITY_PEAK).value)
     said = f"sensitivity peak {value} ({worst.name}; usual: {SENSITIVITY_PEAK.usual})"
-    yield "Worst margin", Derived(said, GOALS)
+    yield "Worst margin", Linked(said, section=GOALS)

@@ -21,7 +21,7 @@ from nrs_design.design.measures import (
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.sections.places import At, linked
+from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.style import INK, MUTED, color, curve, legend, marker, new_axes, styled
 
 if TYPE_CHECKING:
@@ -55,25 +55,13 @@ _SUDDEN = (
 )
 
 
-def _limit(value: float) -> str:
-    """Write a limit of stiffness, rounded down."""
+def _limit(value: float | None) -> str:
+    """Write a limit of stiffness, rounded down; nothing if there is none."""
+    if value is None:
+        return ""
     if math.isnan(value):
         return "not computed"
     return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
-
-
-def _at_arm(item: ImpedanceAnalysis) -> str:
-    return "" if item.limit_at_arm is None else _limit(item.limit_at_arm)
-
-
-def _optimal(item: ImpedanceAnalysis, gain: str) -> str:
-    """Write a gain at the optimum; one that the spec gives was not chosen."""
-    given = getattr(item.given, gain).fixed
-    return "given" if given else number(getattr(item.optimum, gain), 6)
-
-
-def _spring(item: ImpedanceAnalysis) -> str:
-    return number(item.problem.loop.Kt, 6) if item.problem.loop.Kt else ""
 
 
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
@@ -81,35 +69,18 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
     ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
     ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
-    ("Mt at the optimum [kg·m²]", lambda item: _optimal(item, "Mt")),
-    ("Bt at the optimum [N·m·s/rad]", lambda item: _optimal(item, "Bt")),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
-    ("Kt as given [N·m/rad]", _spring),
+    (
+        "Kt as given [N·m/rad]",
+        lambda item: (item.problem.loop.Kt and number(item.problem.loop.Kt, 6)) or "",
+    ),
     ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
     ("k limit [N·m/rad], worst", lambda item: _limit(item.lowest_limit)),
-    ("k limit at the lever arm [N/m], worst", _at_arm),
+    ("k limit at the lever arm [N/m], worst", lambda item: _limit(item.limit_at_arm)),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
     ("Not passive near [Hz], exact", lambda item: _not_passive(item.band)),
 )
-
-# By the beginning of the label of a row: the key of the spec that it follows from, of the
-# environment or of the controller. What follows from several lines leads to the controller.
-_OF_ENVIRONMENT = {"Nominal stiffness": "stiffness", "Nominal damping": "damping"}
-_OF_CONTROLLER = ("Mt", "Bt", "Kt")
-
-
-def _place(label: str, item: ImpedanceAnalysis) -> tuple[str, ...]:
-    """Return where a spec says what a row of the table shows, or what it follows from."""
-    name, _, _ = label.partition(" [")
-    if name in _OF_ENVIRONMENT:
-        return ("environments", item.given.environment, _OF_ENVIRONMENT[name])
-    if name == "Desired impedance":
-        given = item.given.desired_impedance is not None
-        key = "desired_impedance" if given else "desired_impedance_ratio"
-        return ("controllers", item.name, key)
-    gain = label.split()[0]
-    return ("controllers", item.name, *([gain] if gain in _OF_CONTROLLER else []))
 
 
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
@@ -117,7 +88,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
     title = "Impedance controllers: gains, and the worst over the ranges"
-    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items, _place)
+    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items)
     said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
     paragraphs = [Paragraph(" ".join(said))]
     if any(item.band for item in items):
@@ -175,11 +146,10 @@ def by_controller(
     title: str,
     rows: Sequence[tuple[str, Callable[[T], str]]],
     items: Sequence[T],
-    place: Callable[[str, T], At],
 ) -> list[Table]:
     """Make tables with a row for each quantity that some controller has, and a column for each.
 
-    A place says where a spec says what a row shows of a controller.
+    Every number leads to its controller in the spec.
     """
     tables = []
     for start in range(0, len(items), _COLUMNS):
@@ -187,7 +157,7 @@ def by_controller(
         cells = [
             (
                 label if label in _FREQUENCIES else labelled(label),
-                *(linked(loaded, value(item), *place(label, item)) for item in some),
+                *(linked(loaded, value(item), "controllers", item.name) for item in some),
             )
             for label, value in rows
             if any(map(value, items))
@@ -242,9 +212,8 @@ def _draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
         label = f"{item.name}, Ms = {worst.measure.text(peak)}"
         axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
         if math.isfinite(at) and math.isfinite(peak):
-            axes.plot(
-                at, peak, marker(index), color=color(index), markeredgecolor=INK, markersize=8
-            )
+            shape, tint = marker(index), color(index)
+            axes.plot(at, peak, shape, color=tint, markeredgecolor=INK, markersize=8)
     axes.axhline(1.0, color=MUTED, linewidth=1.0)
     _finish(axes, items, "Sensitivity magnitude [1]")
     legend(figure, axes)

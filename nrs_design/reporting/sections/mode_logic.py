@@ -6,8 +6,8 @@ from fractions import Fraction
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Paragraph, Section, Table
-from nrs_design.spec import InteractionDesignSpec, Quantity
-from nrs_design.spec.threshold_logic import LogicSwitchSpec, ThresholdLogicSpec, values_at_switch
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec, values_at_switch
 
 _CHATTER_FREE = (
     "No chatter: between two switches a signal that is known up to a noise N, as old as an age D "
@@ -24,22 +24,15 @@ def logic_section(spec: InteractionDesignSpec) -> Section | None:
     """Describe the mode logic of a spec, if it has one."""
     if spec.mode_logic is None:
         return None
-    words = tuple(Paragraph(text) for text in logic_meaning(spec))
-    return Section("Mode logic", (*words, *logic_tables(spec)))
+    return Section("Mode logic", (*map(Paragraph, logic_meaning(spec)), *logic_tables(spec)))
 
 
 def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
     """Say in sentences what the numbers of a mode logic mean, and what the proof makes of them."""
-    assert spec.mode_logic is not None
+    last = "The statement about stability is for the switching that this logic can give."
     if spec.switching.is_arbitrary:
-        return (
-            *_CHATTER_FREE,
-            "The statement about stability needs none of this: switching is arbitrary.",
-        )
-    return (
-        *_CHATTER_FREE,
-        "The statement about stability is for the switching that this logic can give.",
-    )
+        last = "The statement about stability needs none of this: switching is arbitrary."
+    return (*_CHATTER_FREE, last)
 
 
 def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
@@ -51,51 +44,30 @@ def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
 def _switches(logic: ThresholdLogicSpec) -> Table:
     rows = []
     for number, switch in enumerate(logic.switches, 1):
-        conditions = switch.conditions.items()
-        when = " and ".join(
-            f"{name} above {_text(c.above)}"
-            if c.above is not None
-            else f"{name} below {_text(c.below)}"
-            for name, c in conditions
-        )
-        ends = f"{number}: {switch.source} to {switch.target}"
-        rows.append((ends, when, _reach_text(logic, switch)))
+        ends, when, reach = values_at_switch(logic, switch), list[str](), list[str]()
+        for name, condition in switch.conditions.items():
+            at = Fraction(ends[name])
+            if condition.above is not None:
+                when.append(f"{name} above {condition.above.text}")
+                reach.append(f"{name} ≤ {upper(at)} {_UNITS[name]}")
+            elif condition.below is not None:
+                when.append(f"{name} below {condition.below.text}")
+                reach.append(f"{name} ≥ {lower(at)} {_UNITS[name]}")
+        leads = f"{number}: {switch.source} to {switch.target}"
+        rows.append((leads, " and ".join(when), ", ".join(reach)))
     columns = ("Switch", "When", "True signal then, at worst")
     return Table("Switches, in the order in which they are tried", columns, tuple(rows))
-
-
-def _text(quantity: Quantity | None) -> str:
-    return "" if quantity is None else quantity.text
-
-
-def _reach_text(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> str:
-    ends = values_at_switch(logic, switch)
-    return ", ".join(
-        f"{name} ≤ {upper(Fraction(ends[name]))} {_UNITS[name]}"
-        if condition.above is not None
-        else f"{name} ≥ {lower(Fraction(ends[name]))} {_UNITS[name]}"
-        for name, condition in switch.conditions.items()
-    )
 
 
 def _stays(logic: ThresholdLogicSpec) -> Table:
     rows = []
     for name in logic.controllers:
         stay, derived, apart = logic.stay(name), logic.derived(name), logic.tightest(name)
-        kept = (
-            "–"
-            if apart is None or apart.signal is None
-            else (f"{apart.signal}, from switch {apart.entering + 1} to {apart.leaving + 1}")
-        )
-        rows.append(
-            (
-                name,
-                "–" if stay is None else stay.text,
-                "–" if derived is None else derived.text,
-                kept,
-                f"{upper(logic.held_back(name))} s",
-            )
-        )
+        moves = "–"
+        if apart is not None and apart.signal is not None:
+            moves = f"{apart.signal}, from switch {apart.entering + 1} to {apart.leaving + 1}"
+        texts = ("–" if time is None else time.text for time in (stay, derived))
+        rows.append((name, *texts, moves, f"{upper(logic.held_back(name))} s"))
     columns = (
         "Controller",
         "Held for",

@@ -33,22 +33,15 @@ def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | N
     values = mode_eigenvalues(system)
     slowest = _slowest_first(values, system.time)
     drawn = np.sort(slowest[:_DRAWN])
+    names, spectra = [system.modes[i].name for i in drawn], [values[i] for i in drawn]
+    figure = draw_eigenvalues(names, spectra, system.time, rate)
+    caption = _caption(system, len(drawn), rate)
     return Section(
         MODES,
         (
             Paragraph(f"States, in this order: {shortened(system.states, 16)}."),
             _table(loaded, system, values, slowest[:_LISTED]),
-            Illustration(
-                "eigenvalues",
-                "Eigenvalues of the modes",
-                _caption(system, len(drawn), rate),
-                draw_eigenvalues(
-                    [system.modes[i].name for i in drawn],
-                    [values[i] for i in drawn],
-                    system.time,
-                    rate,
-                ),
-            ),
+            Illustration("eigenvalues", "Eigenvalues of the modes", caption, figure),
         ),
     )
 
@@ -87,13 +80,8 @@ def _table(
         name = system.modes[i].name
         home = mode_at(loaded, name)
         touched = contact_at(loaded, name) or home
-        rows.append(
-            (
-                linked(loaded, name, *home),
-                linked(loaded, shown, *touched),
-                linked(loaded, number(worst, 5), *touched),
-            )
-        )
+        numbers = (linked(loaded, text, *touched) for text in (shown, number(worst, 5)))
+        rows.append((linked(loaded, name, *home), *numbers))
     unit = " [1/s]" if continuous else ""
     size = "Largest real part [1/s]" if continuous else "Largest modulus"
     some = "" if len(rows) == len(system.modes) else f", the {len(rows)} slowest of them"

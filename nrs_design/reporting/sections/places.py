@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from nrs_design.certificates.catalogue import AssumptionKind
-from nrs_design.reporting.document import Linked, Sentence
+from nrs_design.reporting.document import Linked
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchedSystemSpec
 
 At = tuple[str | int, ...]
@@ -18,12 +18,6 @@ def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
     """
     written = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
     return Linked(text, loaded.place(*at).line) if written else text
-
-
-def with_line(loaded: LoadedSpec, text: str, *at: str | int) -> str:
-    """Return a sentence, and after it the line of the spec that it is about, if that is written."""
-    line = linked(loaded, f"line {loaded.place(*at).line}", *at)
-    return Sentence(text, " (", line, ")") if isinstance(line, Linked) else text
 
 
 def mode_at(loaded: LoadedSpec, mode: str) -> At:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.pipeline.certification import Result
@@ -39,6 +41,9 @@ _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
     "Parameter values outside the declared ranges, and motor constants other than those given.",
     "Cost, pole positions and tracking, and margins that no goal calls proved: floating point.",
 )
+_UNDECIDING = "The figures are floating-point illustrations and no part of the decision."
+_GAINS = "The gains in the proof are the single-precision numbers below, not their rounded display."
+_NO_QUADRATIC = "No common quadratic function exists for these modes; the proof does not need one."
 _ILLUSTRATIONS = (
     "The figures and the numbers in the tables are floating-point illustrations and no part of "
     "the proof."
@@ -65,10 +70,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     if result.loaded.spec.has_ranges:
         proved.append(all_corners(system, evidence, page.changing))
     if design:
-        proved.append(
-            "The gains in the proof are the single-precision numbers listed below, not their "
-            "rounded display."
-        )
+        proved.append(_GAINS)
     proved += _bounds(result.certification)
     proved += _beside(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
@@ -77,11 +79,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
         Bullets("Not proved", (*page.limits, *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
-        blocks.append(
-            Paragraph(
-                "No common quadratic function exists for these modes; the proof does not need one."
-            )
-        )
+        blocks.append(Paragraph(_NO_QUADRATIC))
     return (*blocks, Paragraph(_ILLUSTRATIONS))
 
 
@@ -94,15 +92,13 @@ def _bounds(certification: Certification) -> list[str]:
     ]
 
 
-def _beside(result: Result) -> list[str]:
-    """State the claims about saturation."""
-    system, said = result.certification.system, list[str]()
+def _beside(result: Result) -> Iterator[str]:
+    """Yield the claims about saturation."""
+    system, ranged = result.certification.system, result.loaded.spec.has_ranges
     for item in result.certification.statements:
         if item.shows is Shows.REGION:
-            said.append(item.claim(system))
-            if result.loaded.spec.has_ranges:
-                said.append(all_corners(system, item, page_of(system, item).changing))
-    return said
+            yield item.claim(system)
+            yield from (all_corners(system, item, page_of(system, item).changing),) * ranged
 
 
 def _not_covered_by_design(result: Result) -> tuple[str, ...]:
@@ -143,31 +139,19 @@ def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[st
 
 def _refuted(certification: Certification, evidence: AbstractEvidence) -> tuple[Block, ...]:
     page = page_of(certification.system, evidence)
-    return (
-        Bullets("Refuted", (evidence.claim(certification.system), *page.meaning)),
-        Bullets(
-            "Not said",
-            (
-                *page.limits,
-                "The figures are floating-point illustrations and no part of the decision.",
-            ),
-        ),
-    )
+    claimed = (evidence.claim(certification.system), *page.meaning)
+    return Bullets("Refuted", claimed), Bullets("Not said", (*page.limits, _UNDECIDING))
 
 
 def _inconclusive(certification: Certification) -> tuple[Block, ...]:
+    system, statements = certification.system, certification.statements
     texts = [
         NO_CLAIM,
         "Every search that was asked for has ended without evidence that decides; the rungs that "
         "were tried are listed below.",
+        *(statement.claim(system) for statement in statements),
+        *dict.fromkeys(text for item in statements for text in page_of(system, item).meaning),
     ]
-    if _every_mode_is_stable(certification):
-        texts.append("Every mode by itself is stable, which was decided exactly.")
-    if certification.statements:
-        statements = certification.statements
-        pages = [page_of(certification.system, statement) for statement in statements]
-        texts += [statement.claim(certification.system) for statement in statements]
-        texts += dict.fromkeys(text for page in pages for text in page.meaning)
     if certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         may = "The system may be stable with a function of another kind"
     else:
@@ -179,10 +163,3 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
     where = certification.refuted_in
     title = "Neither proved nor refuted" if where is None else f"Open; refuted {where}"
     return (Bullets(title, tuple(texts)),)
-
-
-def _every_mode_is_stable(certification: Certification) -> bool:
-    return any(
-        attempt.step.endswith("every mode") and attempt.outcome.endswith("all stable")
-        for attempt in certification.attempts
-    )

@@ -109,13 +109,16 @@ def register_of(granted: Iterable[Assumption], spec: Spec | None = None) -> tupl
     identified from, and no doubt.
     """
     tested = frozenset(_tested(spec)) if isinstance(spec, InteractionDesignSpec) else frozenset()
-    return tuple(_entry(assumption, tested) for assumption in granted)
-
-
-def _entry(assumption: Assumption, tested: frozenset[str]) -> Entry:
-    kind = catalogue_kind(assumption)
-    standing = Standing.TESTED if kind.id in tested else kind.standing
-    return Entry(sentence(assumption), kind, bound_of(assumption), standing)
+    kinds = ((assumption, catalogue_kind(assumption)) for assumption in granted)
+    return tuple(
+        Entry(
+            sentence(assumption),
+            kind,
+            bound_of(assumption),
+            Standing.TESTED if kind.id in tested else kind.standing,
+        )
+        for assumption, kind in kinds
+    )
 
 
 def _tested(spec: InteractionDesignSpec) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.axis import labelled
-from nrs_design.reporting.document import Block, Paragraph, Section, Table
+from nrs_design.reporting.document import Block, Paragraph, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
 
@@ -18,11 +18,6 @@ _TEXT = (
     "touches, is exact for commands that take effect at once and no measured force: b > K T/2 + B "
     "with the least friction b of the spec (Colgate and Schenkel 1997). It is no part of the proof."
 )
-
-
-def torque_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
-    """Describe the controllers that make torques, with their passivity."""
-    return Section("Impedance by torques", torque_blocks(loaded, analysis))
 
 
 def torque_blocks(loaded: LoadedSpec, analysis: DesignAnalysis) -> tuple[Block, ...]:

@@ -14,9 +14,9 @@ from nrs_design.errors import NrsDesignError
 from nrs_design.reporting.document import (
     Block,
     Bullets,
-    Derived,
     Illustration,
     Light,
+    Linked,
     Paragraph,
     Report,
     Section,
@@ -87,7 +87,7 @@ def robot_report(
             ),
             ("Tilt of the base", at(f"{number(math.degrees(robot.base_tilt))} deg", "base_tilt")),
             ("Package", f"nrs-design {__version__}"),
-            ("SHA-256 of the spec", Derived(loaded.sha256, SPEC)),
+            ("SHA-256 of the spec", Linked(loaded.sha256, section=SPEC)),
         ),
         sections=(
             _workspace(loaded, robot, survey),

@@ -49,8 +49,7 @@ def test_the_witness_of_a_block_runs_in_the_whole_family():
     page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, unstable),)))
     assert page.meaning[1:] == page_of(GROWING, unstable).meaning
     assert page.limits == page_of(GROWING, unstable).limits
-    # A phase plane needs both states, and the block has one of them.
-    assert [block.name for block in page.run().blocks] == ["run", "phase-plane"]
+    assert [block.name for block in page.run().blocks] == ["run"]
 
 
 @pytest.mark.parametrize(("part", "costs"), [(ONE, False), (FOURTH, True)])

@@ -15,5 +15,5 @@ def test_it_is_the_page_of_its_part_at_one_value():
     assert "a narrower range may be stable" in page.limits[-1]
     first, *rest = page.run().blocks
     assert isinstance(first, Paragraph)
-    assert "simulated at the value of the parameter" in first.text
+    assert "Simulated at the value of the parameter" in first.text
     assert [block.title for block in rest] == [block.title for block in part.run().blocks]

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.facts.certification import loop_facts
+from nrs_design.api.proof_facts import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.remedies import margin_lines
 from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets

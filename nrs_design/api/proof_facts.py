@@ -1,4 +1,4 @@
-"""What ``--json`` prints about a proof and its margins; each double is on the side that is safe."""
+"""Facts of a proof and of its margins, plain and in SI; each double is rounded to its safe side."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from nrs_design.proof.bounds import lower_float, upper_float
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from nrs_design.pipeline.blocked import Blocked
+    from nrs_design.pipeline.blocked import Blocked, Blocking
     from nrs_design.pipeline.certification import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.margin import Bracket, MarginBrackets
 
+Facts = dict[str, Any]
 
-def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
+
+def certification_facts(result: Result, path: Path | None) -> Facts:
     """Return the facts of a decision on stability under switching."""
     from nrs_design.certificates.bounds import bounds_summary
     from nrs_design.certificates.goals import certified_goals
@@ -51,12 +53,12 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
         "gains": dict(certificate.gains) if certificate else None,
         "attempts": [
             {
-                "step": a.step,
-                "outcome": a.outcome,
-                "work": round(a.work, 6),
-                "seconds": round(a.seconds, 6),
+                "step": attempt.step,
+                "outcome": attempt.outcome,
+                "work": round(attempt.work, 6),
+                "seconds": round(attempt.seconds, 6),
             }
-            for a in found.attempts
+            for attempt in found.attempts
         ],
         "assumptions": list(sentences(found.granted)),
         "certificate": None if path is None else str(path),
@@ -64,9 +66,9 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
     }
 
 
-def margins_facts(margins: ProofMargins) -> dict[str, Any]:
-    """Return the facts of the margins that were asked for."""
-    content: dict[str, Any] = {}
+def margins_facts(margins: ProofMargins) -> Facts:
+    """Return the facts of the requested margins."""
+    content: Facts = {}
     if (box := margins.box) is not None:
         content["margin"] = {
             **_number("proved_scale", box.proved, lower_float),
@@ -88,43 +90,12 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
     return content
 
 
-def blocked_facts(blocked: Blocked, spec: Path) -> dict[str, Any]:
-    """Return the facts of what keeps a spec from being proved."""
-    from nrs_design.pipeline.blocked import line_text
-
-    return {
-        "blocked_by": [
-            {
-                "lines": [
-                    {
-                        "place": f"{spec}:{line.place.line}:{line.place.column}",
-                        "line": line.line,
-                        "text": line_text(line),
-                        "proved_up_to": line.proved or None,
-                        "asked": line.asked or None,
-                        "write": line.write or None,
-                        "left_out": line.left_out,
-                    }
-                    for line in item.lines
-                ],
-                "claim": item.claim,
-                "assumptions_besides": item.needs,
-                "gains_differ": item.new_gains,
-                "spec_sha256": item.sha256,
-            }
-            for item in blocked.proved
-        ],
-        "lines_tried": blocked.tried,
-        "lines_work": round(blocked.work, 6),
-    }
-
-
-def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
+def loop_facts(margins: MarginBrackets) -> Facts:
     """Return the facts of the margins of delay, period and disturbances."""
-    brackets = {"delay": (margins.delay, "samples"), "period": (margins.period, "s")}
-    content: dict[str, Any] = {
+    brackets = (("delay", margins.delay, "samples"), ("period", margins.period, "s"))
+    content: Facts = {
         name: {**_ends(bracket), "unit": unit}
-        for name, (bracket, unit) in brackets.items()
+        for name, bracket, unit in brackets
         if bracket is not None
     }
     if margins.command is not None:
@@ -144,7 +115,39 @@ def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
     return content
 
 
-def _ends(bracket: Bracket) -> dict[str, float | str | None]:
+def blocked_facts(blocked: Blocked, spec: Path) -> Facts:
+    """Return the facts of the lines that prevent a proof."""
+    return {
+        "blocked_by": [
+            {
+                "lines": [_line_facts(line, spec) for line in item.lines],
+                "claim": item.claim,
+                "assumptions_besides": item.needs,
+                "gains_differ": item.new_gains,
+                "spec_sha256": item.sha256,
+            }
+            for item in blocked.proved
+        ],
+        "lines_tried": blocked.tried,
+        "lines_work": round(blocked.work, 6),
+    }
+
+
+def _line_facts(line: Blocking, spec: Path) -> Facts:
+    from nrs_design.pipeline.blocked import line_text
+
+    return {
+        "place": f"{spec}:{line.place.line}:{line.place.column}",
+        "line": line.line,
+        "text": line_text(line),
+        "proved_up_to": line.proved or None,
+        "asked": line.asked or None,
+        "write": line.write or None,
+        "left_out": line.left_out,
+    }
+
+
+def _ends(bracket: Bracket) -> Facts:
     proved, refuted = bracket.proved, bracket.refuted
     return {
         "proved": None if proved is None else lower_float(proved),
@@ -154,10 +157,7 @@ def _ends(bracket: Bracket) -> dict[str, float | str | None]:
     }
 
 
-def _number(
-    name: str, number: Fraction | None, rounded: Callable[[Fraction], float]
-) -> dict[str, Any]:
+def _number(name: str, number: Fraction | None, rounded: Callable[[Fraction], float]) -> Facts:
     """Return a number as a double on its safe side, and exactly."""
-    if number is None:
-        return {name: None, f"{name}_exact": None}
-    return {name: rounded(number), f"{name}_exact": str(number)}
+    exact, double = (None, None) if number is None else (str(number), rounded(number))
+    return {name: double, f"{name}_exact": exact}

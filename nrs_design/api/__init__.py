@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from nrs_design.api.worst import WorstFound as WorstFound
     from nrs_design.search.gradient_settings import Gradient as Gradient
 
-_HOMES = {
-    name: module
-    for module, names in {
+__getattr__ = late_names(
+    __name__,
+    {
         "audit": "Audit AuditCheck",
         "decision": "Decision",
         "exported": "Exported",
@@ -40,7 +40,5 @@ _HOMES = {
         "simulation": "ScenarioRun Simulation",
         "study": "Study load",
         "worst": "WorstFound",
-    }.items()
-    for name in names.split()
-}
-__getattr__ = late_names(__name__, _HOMES)
+    },
+)

@@ -17,8 +17,9 @@ from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import FixedParameter, Stay, Switching
-from nrs_design.spec import ModeSpec, SwitchedSystemSpec
+from nrs_design.spec import SwitchedSystemSpec
 from nrs_design.spec.misses import MissesSpec, automaton_of
+from nrs_design.spec.switched_system import ModeSpec
 
 MAX_TRANSITIONS = 200_000
 ONCE = Stay(Fraction(1), Fraction(1))

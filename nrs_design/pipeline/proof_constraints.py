@@ -18,7 +18,7 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 if TYPE_CHECKING:
     from nrs_design.design.trust_region import Evaluation
     from nrs_design.proof.system import SwitchedSystem
-    from nrs_design.spec import GoalsSpec
+    from nrs_design.spec.goals import GoalsSpec
 
 # How far a coordinate moves for a slope.
 STEP = 1e-3

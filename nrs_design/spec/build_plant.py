@@ -49,9 +49,8 @@ class OperatingConditions:
     idle: IdleStatesSpec | None  # What idle states do
     offset: Offset  # Where the offset of the force controllers is taken from
     sampling: SamplingSpec | None  # The processor; None in continuous time
-    command_delay: tuple[
-        Fraction, Fraction
-    ]  # Shortest and longest time from a sample to its command, in s
+    # Shortest and longest time in s from a sample to the moment when its command takes effect.
+    command_delay: tuple[Fraction, Fraction]
     constant_delay_key: str | None  # The key that says it, where it is unknown but constant
     disturbances: Bounds | None  # None where nothing is said to disturb
     largest_angle: Fraction | None  # Of the joint in rad, rounded up

@@ -40,10 +40,8 @@ class CertificationSpec(SpecModel, stronger="beside"):
     """How far the search for a proof goes; options of the commands override it."""
 
     max_degree: Annotated[int | None, ParsedBy(_read_degree, _DEGREE_SCHEMA)] = optional(
-        "highest degree of a polynomial Lyapunov function, even, at most 64; default: "
-        "as high as the budget allows"
+        "highest degree of a polynomial Lyapunov function: even, at most 64; default: by the budget"
     )
     budget: Annotated[Fraction | None, ParsedBy(_read_budget, _BUDGET_SCHEMA)] = optional(
-        "work of the search, counted in units of about a second, the same on every "
-        "machine; at most 600, default 60"
+        "work of the search in units of about a second; at most 600, default 60"
     )

@@ -65,9 +65,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     lever_arm: field.LeverArm | None = optional(_LEVER_ARM)
     range_covers: Coverage | None = optional(_COVERS, stronger="neither")
     linearized_about: Title | None = optional(
-        "deflections that a nonlinear law was linearized about, in words: the ranges "
-        "hold small motions there",
-        stronger="neither",
+        "deflections, in words, that a nonlinear law was linearized about", stronger="neither"
     )
 
     def _without_arm(self) -> Iterator[tuple[Location, str]]:
@@ -176,9 +174,7 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 
     law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
 
-    model: Literal["kelvin-voigt"] = required(
-        "law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
-    )
+    model: Literal["kelvin-voigt"] = required("law: kelvin-voigt, F = k delta + b ddelta/dt")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
     damping: field.Damping = required(_DAMPING.format(which=""))
 
@@ -189,14 +185,13 @@ class HandSpec(AbstractEnvironmentSpec):
     law: ClassVar[type[AbstractLinearLaw]] = Hand
 
     model: Literal["hand"] = required(
-        "law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
-        "holds the robot, so contact is kept"
+        "law: hand, F = k delta + b ddelta/dt + m d2delta/dt2; contact is kept"
     )
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
     damping: field.Damping = required(_DAMPING.format(which=""))
     mass: field.HandMass = required(
-        "mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
-        "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
+        "mass at the pivot in kg*m^2, or at the contact point in kg with lever_arm; one quantity, "
+        "or {nominal: ..., range: [lowest, highest]}"
     )
 
 
@@ -206,8 +201,7 @@ class MaxwellSpec(AbstractEnvironmentSpec):
     law: ClassVar[type[AbstractLinearLaw]] = Maxwell
 
     model: Literal["maxwell"] = required(
-        "law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
-        "rest position, and must be the only environment that controllers touch"
+        "law: maxwell, F + (b/k) dF/dt = b ddelta/dt; no rest position, so nothing else is touched"
     )
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=" k of the spring"))
     damping: field.PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
@@ -219,8 +213,7 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     law: ClassVar[type[AbstractLinearLaw]] = KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = required(
-        "law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
-        "k1 beside a damper b"
+        "law: kelvin-boltzmann, a spring k2 in a row with a spring k1 beside a damper b"
     )
     parallel_stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" k1 of the spring beside the damper,")
@@ -238,20 +231,18 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = HuntCrossley
 
     model: Literal["hunt-crossley"] = required(
-        "law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
-        "while its deflection stays in the preload"
+        "law: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi within the preload"
     )
     stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" of small motions at the deflection `about`,")
     )
     damping: field.Damping = required(_DAMPING.format(which=" at the deflection `about`,"))
     exponent: RangedExponent = required(
-        "phi, 1 to 3 with at most three decimals, no unit; one number, or "
-        "{nominal: ..., range: [lowest, highest]}"
+        "phi, 1 to 3, three decimals, no unit; one number, or {nominal: ..., range: [...]}"
     )
     about: field.Deflection = required(
-        "deflection at which stiffness and damping are given, within the preload: a "
-        "length with lever_arm, an angle otherwise"
+        "deflection of stiffness and damping, in the preload: a length with lever_arm, else an "
+        "angle"
     )
     preload: tuple[field.Deflection, field.Deflection] = required(
         "[lowest, highest] deflection, counted from the surface, within which the proof holds"

@@ -105,13 +105,10 @@ class FreeGainsSpec(SpecModel, stronger="beside"):
 class DesignSpec(SpecModel, stronger="beside"):
     """How gains are written down."""
 
-    significant_digits: Digits = optional(
-        "designed gains are rounded to so many digits, 1 to 7, then to float32", 4
-    )
+    significant_digits: Digits = optional("digits of designed gains, 1 to 7, before float32", 4)
     free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = optional(
-        "gains beside Mt and Bt that `optimize` may change where the proof steers: motion or the "
-        "name of a controller -> gain -> {min: ..., max: ...}, as factors on the gain that the "
-        "spec gives; all other commands take that gain",
+        "gains beside Mt and Bt that `optimize` may change: motion or the name of a controller -> "
+        "gain -> {min: ..., max: ...}, as factors on the given gain",
         {},
     )
 
@@ -123,24 +120,16 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     axis: AxisType = optional(
-        "rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
-        "in m, N and kg wherever a rotary one has those",
-        AxisType.ROTARY,
+        "rotary: in rad, N*m and kg*m^2; prismatic: m, N and kg stand for those", AxisType.ROTARY
     )
-    actuator: ActuatorSpec | None = optional(
-        "the velocity-controlled motor, with motion_loop around it"
-    )
+    actuator: ActuatorSpec | None = optional("the velocity-controlled motor; with motion_loop")
     motion_loop: MotionLoopSpec | None = optional("the position loop around the motor")
     velocity_interface: VelocityInterfaceSpec | None = optional(
-        "a robot that closes its own motion loop and takes velocities, in the place of actuator "
-        "and motion_loop"
+        "a robot with a motion loop of its own that takes velocities; without actuator"
     )
-    position_interface: PositionInterfaceSpec | None = optional(
-        "the same of a robot that takes positions"
-    )
+    position_interface: PositionInterfaceSpec | None = optional("the same for positions")
     torque_interface: TorqueInterfaceSpec | None = optional(
-        "a robot that takes torques, in the place of actuator and motion_loop; its controllers are "
-        "of type torque-impedance"
+        "a robot that takes torques, without actuator; for controllers of type torque-impedance"
     )
     limits: LimitsSpec = required("what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = optional(
@@ -150,49 +139,32 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = required("what the robot switches between: name -> controller")
     idle_states: IdleStatesSpec | None = optional(
-        "what the states of impedance controllers do while a position or force "
-        "controller is active, and the integral of a pi-force controller while another one is; "
-        "required where there are both"
+        "states of impedance controllers under position or force controllers, and integrals of "
+        "pi-force controllers under others; required where both exist"
     )
-    anti_windup: AntiWindupSpec | None = optional(
-        "where the processor cuts off the integral of pi-force controllers; with sampling"
-    )
-    goals: GoalsSpec | None = optional(
-        "what every impedance and force controller must achieve; the gate enforces it"
-    )
+    anti_windup: AntiWindupSpec | None = optional("clamp of the integral of pi-force controllers")
+    goals: GoalsSpec | None = optional("goals of each impedance and force controller, and the gate")
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
-    sampling: SamplingSpec | None = optional(
-        "the processor that runs the law; without it the proof is for continuous time"
-    )
-    disturbances: DisturbancesSpec | None = optional(
-        "what acts on the loop from outside; its effect on force and velocity is bounded"
-    )
-    sensor: SensorSpec | None = optional(
-        "the force signal: its filter is a part of the loop, its errors bound the "
-        "creep; without it the force is taken for exact"
-    )
+    sampling: SamplingSpec | None = optional("the processor of the law; default: continuous time")
+    disturbances: DisturbancesSpec | None = optional("what acts on the loop from outside")
+    sensor: SensorSpec | None = optional("the force signal, its filter and errors; default: exact")
     monitoring: MonitoringSpec | None = optional(
-        "what readings of a running loop are worth, for `export --format monitor` and `audit`; no "
-        "proof depends on it"
+        "errors of readings, for `export --format monitor` and `audit`; no proof depends on it"
     )
     contact: Literal["losable", "kept"] | None = optional(
-        "whether a proof must hold while contact is lost and made again (losable), or "
-        "takes for granted that it is kept; default: losable where that can be proved",
+        "losable: proved for contact that is lost and made again; kept: taken for granted; "
+        "default: losable where that can be proved",
         stronger=("kept", None, "losable"),
     )
     coordinates: Literal["deflection"] = optional(
-        "state of the contact: the deflection, which stays continuous when the stiffness switches",
-        "deflection",
+        "state of the contact: the deflection", "deflection"
     )
     mode_logic: ThresholdLogicSpec | None = optional(
-        "what decides which controller is active; `switching: mode-logic` lets the "
-        "proof be about the switching signals that it can give",
-        unsaid="most",
+        "what decides which controller is active, for `switching: mode-logic`", unsaid="most"
     )
     switching: LogicalRule = required(
-        "when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
-        "with dwell_time and transitions between controllers, or between controllers in one "
-        "contact each, such as tissue/soft"
+        "arbitrary, mode-logic, or rules with dwell_time and transitions between controllers, or "
+        "between controllers in one contact each, such as tissue/soft"
     )
     scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = optional(
         "runs for `nrs-design simulate`: name -> scenario; no proof depends on them", {}

@@ -2,163 +2,156 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
-from nrs_design.axis import COMMAND_UNITS
+from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.spec.quantity import QuantityKind, written_as
 
+_ON_A_SLIDE = "the axis is prismatic: "
 _FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
-_GAINS = tuple(f"rad/s/{command}" for command in COMMAND_UNITS)
+_RPM = "rpm is the driver's command unit and is never converted: write "
+_ARM = "multiply it by its lever arm and write "
+_ARM_SQUARED = "multiply it by the square of its lever arm and write "
 
 
-def _sliding(name: str, units: tuple[str, ...], example: str) -> QuantityKind:
-    """Return a kind of quantity of an axis that slides."""
-    return QuantityKind(name, units, example, reason="the axis is prismatic: ")
+def _kind(
+    name: str,
+    units: str,
+    example: str,
+    confusions: Mapping[str, str] | None = None,
+    *,
+    rational: bool = True,
+    slides: tuple[str, str] | None = None,
+) -> QuantityKind:
+    """Return a kind; `slides` has its name and an example on an axis that slides.
+
+    Units have spaces between; ``{}`` stands for each unit of commands.
+    """
+    each = tuple(
+        filled
+        for unit in units.split()
+        for filled in dict.fromkeys(unit.format(command) for command in COMMAND_UNITS)
+    )
+    kind = QuantityKind(name, each, example, confusions or {}, rational=rational)
+    if slides is None:
+        return kind
+    turned = tuple(map(AxisType.PRISMATIC.unit, each if kind.is_about_commands else each[:1]))
+    return replace(kind, sliding=QuantityKind(slides[0], turned, slides[1], reason=_ON_A_SLIDE))
 
 
-ACTUATOR_GAIN = QuantityKind(
+ACTUATOR_GAIN = _kind(
     "an actuator gain",
-    _GAINS,
+    "rad/s/{}",
     "4.8417e-4 rad/s/rpm",
-    {
-        "rpm/V": "rpm is the driver's command unit and is never converted: write rad/s/V (1 rpm is "
-        "pi/30 rad/s)"
-    },
-    sliding=_sliding(
-        "an actuator gain", tuple(f"m/s/{c}" for c in COMMAND_UNITS), "1.2e-4 m/s/rpm"
-    ),
+    {"rpm/V": f"{_RPM}rad/s/V (1 rpm is pi/30 rad/s)"},
+    slides=("an actuator gain", "1.2e-4 m/s/rpm"),
 )
-DURATION = QuantityKind("a duration", ("s",), "0.0351 s")
-DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
-DERIVATIVE_GAIN = QuantityKind(
+DURATION = _kind("a duration", "s", "0.0351 s")
+DWELL_TIME = _kind("a dwell time", "s", "2.76 s")
+DERIVATIVE_GAIN = _kind(
     "a derivative gain",
-    tuple(f"{command}*s/rad" for command in COMMAND_UNITS),
+    "{}*s/rad",
     "2060 rpm*s/rad",
-    sliding=_sliding("a derivative gain", tuple(f"{c}*s/m" for c in COMMAND_UNITS), "8600 rpm*s/m"),
+    slides=("a derivative gain", "8600 rpm*s/m"),
 )
-ZERO = QuantityKind("a zero of the PD controller", ("1/s",), "56.9706 1/s")
-DECAY = QuantityKind("a rate of decay", ("1/s",), "20 1/s")
-ANGULAR_VELOCITY = QuantityKind(
+ZERO = _kind("a zero of the PD controller", "1/s", "56.9706 1/s")
+DECAY = _kind("a rate of decay", "1/s", "20 1/s")
+ANGULAR_VELOCITY = _kind(
     "an angular velocity",
-    ("rad/s", "deg/s"),
+    "rad/s deg/s",
     "8 deg/s",
-    {"rpm": "rpm is the driver's command unit and is never converted: write deg/s or rad/s"},
+    {"rpm": f"{_RPM}deg/s or rad/s"},
     rational=False,
-    sliding=_sliding("a velocity", ("m/s",), "30 mm/s"),
+    slides=("a velocity", "30 mm/s"),
 )
-TORQUE = QuantityKind(
-    "a torque",
-    ("N*m",),
-    "0.3 N*m",
-    {"N": "that is a force: multiply it by its lever arm and write N*m"},
-    sliding=_sliding("a force", ("N",), "3 N"),
+TORQUE = _kind(
+    "a torque", "N*m", "0.3 N*m", {"N": f"that is a force: {_ARM}N*m"}, slides=("a force", "3 N")
 )
 INITIAL_TORQUE = replace(TORQUE, example="0.5 N*m")
-BANDWIDTH = QuantityKind(
+BANDWIDTH = _kind(
     "a bandwidth",
-    ("rad/s", "Hz"),
+    "rad/s Hz",
     "2 Hz",
-    {
-        "1/s": _FREQUENCY,
-        "rpm": "rpm is the driver's command unit and is never converted: write Hz or rad/s",
-    },
+    {"1/s": _FREQUENCY, "rpm": f"{_RPM}Hz or rad/s"},
     rational=False,
 )
-STIFFNESS = QuantityKind(
-    "a stiffness",
-    ("N*m/rad", "N/m"),
-    "43.0356 N*m/rad",
-    sliding=_sliding("a stiffness", ("N/m",), "747.1461 N/m"),
+STIFFNESS = _kind(
+    "a stiffness", "N*m/rad N/m", "43.0356 N*m/rad", slides=("a stiffness", "747.1461 N/m")
 )
-DAMPING = QuantityKind(
-    "a damping",
-    ("N*m*s/rad", "N*m*s", "N*s/m"),
-    "0.5 N*m*s/rad",
-    sliding=_sliding("a damping", ("N*s/m",), "5 N*s/m"),
+DAMPING = _kind(
+    "a damping", "N*m*s/rad N*m*s N*s/m", "0.5 N*m*s/rad", slides=("a damping", "5 N*s/m")
 )
-HAND_MASS = QuantityKind(
+HAND_MASS = _kind(
     "a mass that moves with the contact",
-    ("kg*m^2", "kg*m^2/rad", "kg"),
+    "kg*m^2 kg*m^2/rad kg",
     "0.1 kg*m^2",
     {"N": "that is a weight: divide it by the gravity and write kg"},
-    sliding=_sliding("a mass that moves with the contact", ("kg",), "1.7 kg"),
+    slides=("a mass that moves with the contact", "1.7 kg"),
 )
-LEVER_ARM = QuantityKind("a length", ("m",), "240 mm")
-IMPEDANCE = QuantityKind(
+LEVER_ARM = _kind("a length", "m", "240 mm")
+IMPEDANCE = _kind(
     "an impedance",
-    ("N*m*s/rad", "kg*m^2/s"),
+    "N*m*s/rad kg*m^2/s",
     "2.15 N*m*s/rad",
-    {
-        "N*s/m": "that is a linear damping: multiply it by the square of its lever arm and write "
-        "N*m*s/rad"
-    },
-    sliding=_sliding("an impedance", ("N*s/m",), "37 N*s/m"),
+    {"N*s/m": f"that is a linear damping: {_ARM_SQUARED}N*m*s/rad"},
+    slides=("an impedance", "37 N*s/m"),
 )
-INERTIA = QuantityKind(
+INERTIA = _kind(
     "an inertia",
-    ("kg*m^2", "kg*m^2/rad"),
+    "kg*m^2 kg*m^2/rad",
     "0.01 kg*m^2",
-    {"kg": "that is a mass: multiply it by the square of its lever arm and write kg*m^2"},
-    sliding=_sliding("a mass", ("kg",), "1.7 kg"),
+    {"kg": f"that is a mass: {_ARM_SQUARED}kg*m^2"},
+    slides=("a mass", "1.7 kg"),
 )
-FORCE_GAIN = QuantityKind(
+FORCE_GAIN = _kind(
     "a proportional force gain",
-    ("rad/(N*m)",),
+    "rad/(N*m)",
     "0.02 rad/(N*m)",
     {"rad*m/N": "rad/N*m is (rad/N)*m: write '{value} rad/(N*m)'"},
-    sliding=_sliding("a proportional force gain", ("m/N",), "3e-4 m/N"),
+    slides=("a proportional force gain", "3e-4 m/N"),
 )
-INTEGRAL_FORCE_GAIN = QuantityKind(
+INTEGRAL_FORCE_GAIN = _kind(
     "an integral force gain",
-    ("rad/(N*m*s)",),
+    "rad/(N*m*s)",
     "0.5 rad/(N*m*s)",
-    sliding=_sliding("an integral force gain", ("m/(N*s)",), "8e-3 m/(N*s)"),
+    slides=("an integral force gain", "8e-3 m/(N*s)"),
 )
-
-SPRING = QuantityKind(
+SPRING = _kind(
     "a rotational stiffness",
-    ("N*m/rad",),
+    "N*m/rad",
     "0.5 N*m/rad",
-    {
-        "N/m": "that is a linear stiffness: multiply it by the square of its lever arm and write "
-        "N*m/rad"
-    },
-    sliding=_sliding("a stiffness", ("N/m",), "9 N/m"),
+    {"N/m": f"that is a linear stiffness: {_ARM_SQUARED}N*m/rad"},
+    slides=("a stiffness", "9 N/m"),
 )
-TORQUE_RATE = QuantityKind(
-    "a rate of torque",
-    ("N*m/s",),
-    "1e-5 N*m/s",
-    sliding=_sliding("a rate of force", ("N/s",), "1e-5 N/s"),
+TORQUE_RATE = _kind(
+    "a rate of torque", "N*m/s", "1e-5 N*m/s", slides=("a rate of force", "1e-5 N/s")
 )
-LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
-LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
-
-MASS = QuantityKind(
-    "a mass", ("kg",), "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
+LINEAR_STIFFNESS = _kind("a linear stiffness", "N/m", "747.1461 N/m")
+LINEAR_DAMPING = _kind("a linear damping", "N*s/m", "5 N*s/m")
+MASS = _kind(
+    "a mass", "kg", "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
 )
-FORCE = QuantityKind("a force", ("N",), "1.3 N")
-LENGTH = QuantityKind("a length", ("m",), "135 mm")
-ANGLE = QuantityKind(
-    "an angle", ("rad",), "45 deg", rational=False, sliding=_sliding("a position", ("m",), "20 mm")
-)
-PHASE = QuantityKind("a phase", ("rad",), "30 deg", rational=False)
+FORCE = _kind("a force", "N", "1.3 N")
+LENGTH = _kind("a length", "m", "135 mm")
+ANGLE = _kind("an angle", "rad", "45 deg", rational=False, slides=("a position", "20 mm"))
+PHASE = _kind("a phase", "rad", "30 deg", rational=False)
 DEFLECTION = QuantityKind(
     "a deflection",
     ("m", "rad"),
     "5 mm",
     {"N": "that is a force: write the deflection in mm, or in rad at the pivot"},
     rational=False,
-    sliding=_sliding("a deflection", ("m",), "5 mm"),
+    sliding=QuantityKind("a deflection", ("m",), "5 mm", reason=_ON_A_SLIDE),
 )
-LINEAR_VELOCITY = QuantityKind("a velocity", ("m/s",), "18.5 mm/s")
-ACCELERATION = QuantityKind("an acceleration", ("m/s^2",), "9.81 m/s^2")
-ANGULAR_ACCELERATION = QuantityKind(
+LINEAR_VELOCITY = _kind("a velocity", "m/s", "18.5 mm/s")
+ACCELERATION = _kind("an acceleration", "m/s^2", "9.81 m/s^2")
+ANGULAR_ACCELERATION = _kind(
     "an angular acceleration",
-    ("rad/s^2",),
+    "rad/s^2",
     "3.584 rad/s^2",
     rational=False,
-    sliding=_sliding("an acceleration", ("m/s^2",), "2 m/s^2"),
+    slides=("an acceleration", "2 m/s^2"),
 )
 _DRIVERS_OWN = (
     "the driver's command has a unit of its own that is never converted: write "
@@ -178,17 +171,15 @@ COMMAND = QuantityKind(
     ),
 )
 # What any drive takes: a motor, or an interface to velocities or positions.
-DRIVE_COMMAND = QuantityKind(
+DRIVE_COMMAND = _kind(
     "a command of the drive",
-    (*COMMAND_UNITS, "N*m", "rad/s", "rad"),
+    "{} N*m rad/s rad",
     "276.575 rpm",
-    sliding=QuantityKind(
-        "a command of the drive", (*COMMAND_UNITS, "N", "m/s", "m"), "276.575 rpm"
-    ),
+    slides=("a command of the drive", "276.575 rpm"),
 )
-TORQUE_GRADIENT = QuantityKind(
+TORQUE_GRADIENT = _kind(
     "a speed-torque gradient",
-    ("rpm/(N*m)",),
+    "rpm/(N*m)",
     "2.7044e5 rpm/(N*m)",
     {"rpm*m/N": "rpm/N*m is (rpm/N)*m: write '{value} rpm/(N*m)'"},
 )

@@ -49,7 +49,7 @@ def read_quantity(
         quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
-            above = f"write a number above zero{kind.such}"
+            above = f"write a number above zero{kind.example_clause}"
             raise SpecError(
                 f"{quoted(quantity.text)} must be {bound}",
                 remedy="check the sign" if quantity.value else above,
@@ -134,7 +134,7 @@ class RangedQuantity(SpecModel):
 
     nominal: AnyQuantity = required("value that the design uses")
     range: tuple[AnyQuantity, AnyQuantity] = range_around(
-        "[lowest, highest] value that the proof covers; default: the nominal one"
+        "[lowest, highest] value that is proved; default: the nominal one"
     )
 
     varies: Switch = optional(

@@ -60,29 +60,20 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
     """
 
     period: field.Duration = required("time between two samples in s")
-    delay: Delay = required(
-        "age of the force sample that the law uses, in samples: one number, or "
-        "[smallest, largest] for a delay that may differ at every sample"
-    )
+    delay: Delay = required("age of the force in samples: one number, or [smallest, largest]")
     latency: field.TimeRange | None = optional(
-        "time in s from a sample to where its command takes effect: one number, or [shortest, "
-        "longest] for one that may differ at every sample; default: at once"
+        "time in s from a sample to its command, one number or [shortest, longest]; default: at "
+        "once"
     )
-    jitter: field.Duration | None = optional(
-        "by how much, in s, a period may be longer or shorter than `period`, each for itself"
-    )
+    jitter: field.Duration | None = optional("by how much, in s, a period may differ from `period`")
     outer_period: field.Duration | None = optional(
-        "time between two samples of the outer loop (filter of the force and "
-        "admittance) in s, where it is not that of the motion loop: a whole number of its "
-        "periods, or a whole part of one; `delay` counts samples of the force, so these",
+        "period of filter and admittance in s, where it is not that of the motion loop: a whole "
+        "multiple or part of it; `delay` counts its samples",
         unsaid="other",
     )
-    misses: DeadlinesSpec | None = optional(
-        "how many periods may miss their deadline, and what happens in these; default: none"
-    )
+    misses: DeadlinesSpec | None = optional("periods that may miss their deadline; default: none")
     admittance: Literal["exact", "euler"] = optional(
-        "how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
-        "period, or one step of Euler's method",
+        "step of Mt vm' + Bt vm = F: exact for a held force, or by Euler's method",
         "exact",
         stronger="neither",
     )
@@ -155,23 +146,15 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
 class DisturbancesSpec(SpecModel, stronger="larger"):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
-    command: field.AngularVelocity | None = optional(
-        "largest velocity command in rad/s, however it changes"
-    )
+    command: field.AngularVelocity | None = optional("largest velocity command in rad/s")
     friction: field.DriveCommand | None = optional(
-        "largest Coulomb friction of the motor, as the command that it takes, in the "
-        "unit of the commands, such as rpm"
+        "largest Coulomb friction as a command, such as rpm"
     )
-    encoder_step: field.Angle | None = optional(
-        "resolution of the measured joint angle in rad: an error of half a step"
-    )
-    force_step: field.Torque | None = optional(
-        "resolution of the measured torque in N*m: an error of half a step"
-    )
+    encoder_step: field.Angle | None = optional("resolution of the joint angle in rad")
+    force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
 
     largest_angle: field.Angle | None = optional(
-        "largest joint angle and reference in rad that the law holds as "
-        "single-precision numbers: their absolute rounding acts as a disturbance"
+        "largest joint angle and reference in rad, whose float32 rounding acts as a disturbance"
     )
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:

@@ -39,9 +39,9 @@ class ModeSpec(SpecModel, stronger="neither"):
 
     name: Label = required("name of the mode, unique in this file")
     A: _Matrix = required(
-        "state matrix as a list of rows, n x n with n <= 64; integers, decimals, "
-        '"p/q" or expressions that are affine in the parameters such as "3/4*k - m + 0.5", read '
-        "exactly; unit 1/s in continuous time"
+        "n x n state matrix as a list of rows, n <= 64, in 1/s in continuous time; integers, "
+        'decimals, "p/q" or expressions such as "3/4*k - m + 0.5" that are affine in the '
+        "parameters"
     )
 
     @property
@@ -92,17 +92,13 @@ class SwitchedSystemSpec(SpecModel, stronger="unknown"):
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = required(
         "the modes, at least one; of the same size, unless resets link them"
     )
-    switching: SwitchingRule = required(
-        "when modes change: arbitrary, or rules with dwell_time and transitions"
-    )
+    switching: SwitchingRule = required("arbitrary, or rules with dwell_time and transitions")
     misses: MissesSpec | None = optional(
-        "how many steps may miss their deadline, in discrete time, in the place of rules of "
-        "switching; the other modes are what a step in time brings about",
+        "deadlines that may be missed, in discrete time, instead of rules of switching",
         unsaid="most",
     )
     resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = optional(
-        "what switches do to the state; the others leave it as it is. Several from one "
-        "mode to another are as many switches: any one of them may happen",
+        "what switches do to the state; default: nothing. Of several for one switch any may happen",
         (),
     )
     # The default is made without validation, for which a validator of its own would be built.

@@ -67,9 +67,7 @@ class LogicSignalsSpec(SpecModel, stronger="unknown", unsaid="most"):
     """What the logic sees."""
 
     command: CommandSignalSpec | None = optional("velocity command, positive towards the tissue")
-    torque: TorqueSignalSpec | None = optional(
-        "torque of the tissue on the robot, positive where it is pushed"
-    )
+    torque: TorqueSignalSpec | None = optional("torque of the tissue, positive where it is pushed")
 
 
 _ONE_SIDE = Row[Any](
@@ -145,17 +143,15 @@ class SwitchSeparation:
 class ThresholdLogicSpec(SpecModel, stronger="unknown"):
     """Controllers that follow each other by thresholds on command and torque."""
 
-    type: Literal["thresholds"] = required(
-        "thresholds: switches by the size and the sign of command and torque"
-    )
+    type: Literal["thresholds"] = required("thresholds: switches by command and torque")
     start: Label = required("controller that is active at first")
     signals: LogicSignalsSpec = required("what the logic sees, and how well")
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
-    ] = required("switches from one controller to another; the first that may be made is")
+    ] = required("switches between controllers; the first that may be made is")
     hold: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
-        "shortest time in s for which a controller is held whatever the signals "
-        "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
+        "shortest time in s for each controller; one for all, or by name. Default: thresholds, "
+        "noise and age",
         unsaid="most",
     )
 

@@ -6,7 +6,8 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import InteractionDesignSpec, ModeSpec, SwitchedSystemSpec, parse_spec
+from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec, parse_spec
+from nrs_design.spec.switched_system import ModeSpec
 from tests.tables import spec_text
 
 IMPEDANCE, FORCE, SWITCHED = map(spec_text, ("impedance", "force", "switched"))

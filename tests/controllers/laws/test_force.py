@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import ProportionalForce
-from nrs_design.spec import ForceControllerSpec
+from nrs_design.spec.controllers import ForceControllerSpec
 
 FIXED = ForceControllerSpec(type="force", environment="soft", proportional_gain="0.02 rad/(N*m)")
 CHOSEN = ForceControllerSpec(type="force", environment="soft", damping_ratio="0.741")

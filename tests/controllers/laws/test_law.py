@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance
-from nrs_design.spec import PositionControllerSpec
+from nrs_design.spec.controllers import PositionControllerSpec
 
 
 @dataclass(frozen=True, slots=True)

@@ -129,7 +129,15 @@ class AbstractControllerSpec(SpecModel, stronger="neither"):
         return {name: value for name, value in self if isinstance(value, GainSpec)}
 
 
-class ImpedanceControllerSpec(AbstractControllerSpec):
+class AbstractContactControllerSpec(AbstractControllerSpec):
+    """What controllers have in common that touch something."""
+
+    type: str
+    environment: Label = required(_ENVIRONMENT, "unknown")
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
+
+
+class ImpedanceControllerSpec(AbstractContactControllerSpec):
     """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1).
 
     With a spring it is ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2).
@@ -143,8 +151,6 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
     type: Literal["impedance"] = required("impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     desired_impedance: field.Impedance | None = optional(
         "impedance to display in N*m*s/rad; default: torque/velocity of limits",
         stronger="unknown",
@@ -201,21 +207,25 @@ def _just_one_of(*ways: dict[str, str]) -> ConfigDict:
     return ConfigDict(json_schema_extra={"oneOf": [{"required": [*k]} for k in product(*ways)]})
 
 
-class ForceControllerSpec(AbstractControllerSpec):
+class AbstractForceSpec(AbstractContactControllerSpec):
+    """A controller that holds a force, with a proportional gain."""
+
+    commands: ClassVar[Command] = "position"
+    holds_force: ClassVar[bool] = True
+
+    proportional_gain: field.ForceGain | None = optional("Kp in rad/(N*m), or damping_ratio")
+    damping_ratio: UnitFraction | None = optional(
+        "wanted for the dominant poles, without an integral, in (0, 1), no unit"
+    )
+
+
+class ForceControllerSpec(AbstractForceSpec):
     """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
 
     model_config = _just_one_of(_PROPORTIONAL)
-    commands: ClassVar[Command] = "position"
-    holds_force: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
 
     type: Literal["force"] = required("force: u = X_i + Kp (Fd - F), see offset")
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: field.ForceGain | None = optional("Kp in rad/(N*m), or damping_ratio")
-    damping_ratio: UnitFraction | None = optional(
-        "wanted for the dominant poles, in (0, 1), no unit"
-    )
     offset: Offset = optional(
         "offset X_i of the command (thesis 6.41), held from one switch of controllers to the "
         "next: the reference of the motion loop at the switch, or the measured position; none: u "
@@ -232,12 +242,10 @@ class ForceControllerSpec(AbstractControllerSpec):
     checks = exactly_one(_PROPORTIONAL)
 
 
-class IntegralControllerSpec(AbstractControllerSpec):
+class IntegralControllerSpec(AbstractForceSpec):
     """Proportional and integral force controller whose integral bleeds in other modes."""
 
     model_config = _just_one_of(_PROPORTIONAL, _INTEGRAL)
-    commands: ClassVar[Command] = "position"
-    holds_force: ClassVar[bool] = True
     bleeds: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType(
         {"Kp": "damping_ratio", "Ki": "settling_time"}
@@ -246,12 +254,6 @@ class IntegralControllerSpec(AbstractControllerSpec):
     type: Literal["pi-force"] = required(
         "pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); w decays as idle_states says "
         "while another controller is active, and stays in the command"
-    )
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: field.ForceGain | None = optional("Kp in rad/(N*m), or damping_ratio")
-    damping_ratio: UnitFraction | None = optional(
-        "wanted for the poles without the integral, in (0, 1), no unit"
     )
     integral_gain: field.IntegralForceGain | None = optional("Ki in rad/(N*m*s), or settling_time")
     settling_time: field.Duration | None = optional(
@@ -262,7 +264,7 @@ class IntegralControllerSpec(AbstractControllerSpec):
     checks = (*exactly_one(_PROPORTIONAL), *exactly_one(_INTEGRAL))
 
 
-class TorqueImpedanceSpec(AbstractControllerSpec):
+class TorqueImpedanceSpec(AbstractContactControllerSpec):
     """Impedance control of a robot that takes torques (thesis 2.2.6.1)."""
 
     commands: ClassVar[Command] = "position"
@@ -273,8 +275,6 @@ class TorqueImpedanceSpec(AbstractControllerSpec):
         "torque-impedance: mass, spring and damper to the commanded position; for a "
         "torque_interface"
     )
-    environment: Label = required("name of the environment that it touches", "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     stiffness: field.RotationalStiffness = required("of the spring, in N*m/rad")
     damping: field.NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
     inertia_ratio: Positive | None = optional(

@@ -317,21 +317,23 @@ ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
 )
 
 
+# Stiffness, damping and mass at the contact point, and what they are at the pivot.
+_TURNED = (
+    (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
+    (kinds.LINEAR_DAMPING, kinds.DAMPING),
+    (kinds.MASS, kinds.HAND_MASS),
+)
+
+
 def unit_at_pivot(quantity: Quantity) -> str:
     """Return the unit of a stiffness, damping or mass at the pivot."""
-    each = (
-        (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
-        (kinds.LINEAR_DAMPING, kinds.DAMPING),
-        (kinds.MASS, kinds.HAND_MASS),
-    )
     return next(
         turned.on(current()).units[0]
-        for linear, turned in each
+        for linear, turned in _TURNED
         if linear.accepts(quantity.dimension) or turned.accepts(quantity.dimension)
     )
 
 
 def is_translational(quantity: Quantity) -> bool:
-    """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
-    linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
-    return any(kind.accepts(quantity.dimension) for kind in linear)
+    """Tell whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
+    return any(linear.accepts(quantity.dimension) for linear, _ in _TURNED)

@@ -194,13 +194,12 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        parts: dict[tuple[str, ...], IdentifiedSpec] = {
-            (key,): drive for key, drive in self.drives.items()
+        sampling = {} if self.sampling is None else {("sampling",): self.sampling}
+        return {
+            **{(key,): drive for key, drive in self.drives.items()},
+            **{("environments", name): item for name, item in self.environments.items()},
+            **sampling,
         }
-        parts.update((("environments", name), item) for name, item in self.environments.items())
-        if self.sampling is not None:
-            parts["sampling",] = self.sampling
-        return parts
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -257,13 +256,12 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
         """The numbers of what is touched and of the drive, by the keys that lead to them."""
-        found: dict[tuple[str, ...], RangedQuantity] = {
+        touched = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
             for key, quantity in self.environments[name].ranges.items()
         }
-        found.update(self.motor_ranges.items())
-        return found
+        return {**touched, **self.motor_ranges}
 
     @property
     def late_at(self) -> tuple[str, str] | None:
@@ -300,10 +298,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
         each = [ends_of(times) for times in self.late_times.values()]
-        return (
-            sum((shortest for shortest, _ in each), Fraction(0)),
-            sum((longest for _, longest in each), Fraction(0)),
-        )
+        return sum((t[0] for t in each), Fraction(0)), sum((t[1] for t in each), Fraction(0))
 
     @property
     def has_ranges(self) -> bool:

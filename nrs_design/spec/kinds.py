@@ -132,7 +132,6 @@ LINEAR_DAMPING = _kind("a linear damping", "N*s/m", "5 N*s/m")
 MASS = _kind(
     "a mass", "kg", "73.3 g", {"N": "that is a weight: divide it by the gravity and write g"}
 )
-FORCE = _kind("a force", "N", "1.3 N")
 LENGTH = _kind("a length", "m", "135 mm")
 ANGLE = _kind("an angle", "rad", "45 deg", rational=False, slides=("a position", "20 mm"))
 PHASE = _kind("a phase", "rad", "30 deg", rational=False)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -22,23 +21,17 @@ MAX_SOURCES = 1000
 MAX_DOUBTS = 100
 
 Coverage = Literal["confidence", "tolerance", "prediction"]
-COVERS: Mapping[Coverage, str] = MappingProxyType(
-    {
-        "confidence": "the mean of the specimens with 95 % confidence, and each measured record",
-        "tolerance": "95 % of all such specimens with 95 % confidence",
-        "prediction": "the next record with 95 % probability",
-    }
-)
-
+COVERS: Mapping[Coverage, str] = {
+    "confidence": "the mean of the specimens with 95 % confidence, and each measured record",
+    "tolerance": "95 % of all such specimens with 95 % confidence",
+    "prediction": "the next record with 95 % probability",
+}
 # Of a motor, all whose records are fitted at once.
-MOTOR_COVERS: Mapping[Coverage, str] = MappingProxyType(
-    {
-        "confidence": "gain and time constant of the recorded motor, both at once with 95 % "
-        "confidence",
-        "tolerance": "95 % of all records of such motors with 95 % confidence",
-        "prediction": "the next record with 95 % probability",
-    }
-)
+MOTOR_COVERS: Mapping[Coverage, str] = {
+    **COVERS,
+    "confidence": "gain and time constant of the recorded motor, both at once with 95 % confidence",
+    "tolerance": "95 % of all records of such motors with 95 % confidence",
+}
 
 
 class ProvenanceSpec(SpecModel, stronger="beside"):

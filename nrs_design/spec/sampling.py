@@ -159,17 +159,16 @@ class DisturbancesSpec(SpecModel, stronger="larger"):
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
         """Return the bounds by the names of what disturbs, with their units; none too small."""
-        half = Fraction(1, 2)
         command = "" if self.friction is None else command_unit(self.friction.dimension)
         written = (
-            ("velocity command", self.command, Fraction(1), "rad/s"),
-            ("friction", self.friction, Fraction(1), command),
-            ("encoder error", self.encoder_step, half, "rad"),
-            ("force error", self.force_step, half, "N*m"),
+            ("velocity command", self.command, 1, "rad/s"),
+            ("friction", self.friction, 1, command),
+            ("encoder error", self.encoder_step, 2, "rad"),
+            ("force error", self.force_step, 2, "N*m"),
         )
         return {
-            name: (share * quantity.not_below, unit)
-            for name, quantity, share, unit in written
+            name: (quantity.not_below / parts, unit)
+            for name, quantity, parts, unit in written
             if quantity is not None and quantity.value
         }
 

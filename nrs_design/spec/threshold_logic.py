@@ -110,8 +110,8 @@ class LogicSwitchSpec(SpecModel, stronger="unknown", unsaid="most"):
     @property
     def conditions(self) -> dict[str, Condition]:
         """The conditions by signal."""
-        written = {"command": self.command, "torque": self.torque}
-        return {name: condition for name, condition in written.items() if condition is not None}
+        written = (("command", self.command), ("torque", self.torque))
+        return {name: condition for name, condition in written if condition is not None}
 
     checks = (
         Row(
@@ -251,12 +251,9 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         entering, leaving = self.switches[i].conditions, self.switches[j].conditions
         best = SwitchSeparation(i, j, None, Fraction(0))
         for name in entering.keys() & leaving.keys():
-            ends = _opposed(entering[name], leaving[name])
-            if ends is None:
-                continue
-            seconds = _least_time(*ends, getattr(self.signals, name))
-            if seconds > best.seconds:
-                best = SwitchSeparation(i, j, name, seconds)
+            if ends := _opposed(entering[name], leaving[name]):
+                seconds = _least_time(*ends, getattr(self.signals, name))
+                best = max(best, SwitchSeparation(i, j, name, seconds), key=lambda b: b.seconds)
         return best
 
 

@@ -9,17 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 from pydantic import Discriminator
 
 from nrs_design.axis import AxisType, current
-from nrs_design.models.contact import (
-    AbstractContactLaw,
-    AbstractLinearLaw,
-    AbstractNonlinearLaw,
-    Elastic,
-    Hand,
-    HuntCrossley,
-    KelvinBoltzmann,
-    KelvinVoigt,
-    Maxwell,
-)
+from nrs_design.models import contact
 from nrs_design.models.contact.law import DAMPING
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
@@ -57,8 +47,8 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 
     # The law that designs and proofs take, and its own where that is not linear: the former stands
     # for it while the deflection stays in a preload, off its surface, and no more.
-    law: ClassVar[type[AbstractLinearLaw]]
-    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = None
+    law: ClassVar[type[contact.AbstractLinearLaw]]
+    nonlinear: ClassVar[type[contact.AbstractNonlinearLaw] | None] = None
 
     model: str
 
@@ -163,7 +153,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 class ElasticSpec(AbstractEnvironmentSpec):
     """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
-    law = Elastic
+    law = contact.Elastic
 
     model: Literal["elastic"] = required("law of the environment: elastic, F = k delta")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
@@ -172,7 +162,7 @@ class ElasticSpec(AbstractEnvironmentSpec):
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
 
-    law = KelvinVoigt
+    law = contact.KelvinVoigt
 
     model: Literal["kelvin-voigt"] = required("law: kelvin-voigt, F = k delta + b ddelta/dt")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
@@ -182,7 +172,7 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
 
-    law = Hand
+    law = contact.Hand
 
     model: Literal["hand"] = required(
         "law: hand, F = k delta + b ddelta/dt + m d2delta/dt2; contact is kept"
@@ -198,7 +188,7 @@ class HandSpec(AbstractEnvironmentSpec):
 class MaxwellSpec(AbstractEnvironmentSpec):
     """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
 
-    law = Maxwell
+    law = contact.Maxwell
 
     model: Literal["maxwell"] = required(
         "law: maxwell, F + (b/k) dF/dt = b ddelta/dt; no rest position, so nothing else is touched"
@@ -210,7 +200,7 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
 
-    law = KelvinBoltzmann
+    law = contact.KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = required(
         "law: kelvin-boltzmann, a spring k2 in a row with a spring k1 beside a damper b"
@@ -227,8 +217,8 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 class HuntCrossleySpec(AbstractEnvironmentSpec):
     """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
 
-    law = KelvinVoigt
-    nonlinear = HuntCrossley
+    law = contact.KelvinVoigt
+    nonlinear = contact.HuntCrossley
 
     model: Literal["hunt-crossley"] = required(
         "law: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi within the preload"
@@ -309,7 +299,7 @@ EnvironmentSpec = Annotated[
     Discriminator("model"),
 ]
 # Laws that a spec may name: those of designs, and nonlinear ones.
-ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
+ENVIRONMENT_LAWS: tuple[type[contact.AbstractContactLaw], ...] = tuple(
     law
     for model in get_args(get_args(EnvironmentSpec)[0])
     for law in (model.law, model.nonlinear)

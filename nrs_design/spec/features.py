@@ -45,7 +45,8 @@ def contacted_environments(spec: Spec) -> Iterator[ContactedEnvironment]:
 
 def _named(name: str, find: Callable[[Spec], object]) -> Feature[Spec]:
     """Return a feature with the texts that it has in the table."""
-    return Feature(*TABLE["features"][name], find)
+    phrase, at, without = TABLE["features"][name]
+    return Feature(phrase, at, without, find)
 
 
 def _given(name: str, value: object = None) -> Feature[Spec]:

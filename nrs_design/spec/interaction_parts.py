@@ -12,6 +12,7 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
+from nrs_design.spec import motion
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.check import Row
 from nrs_design.spec.controllers import (
@@ -28,15 +29,6 @@ from nrs_design.spec.fields import Digits, Label, Name, Positive, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
 from nrs_design.spec.model import SpecModel, optional, required
-from nrs_design.spec.motion import (
-    ActuatorSpec,
-    FollowingSpec,
-    LimitsSpec,
-    MotionLoopSpec,
-    PositionInterfaceSpec,
-    TorqueInterfaceSpec,
-    VelocityInterfaceSpec,
-)
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import RangedQuantity, Times, ends_of
@@ -52,7 +44,7 @@ MAX_ENTRIES = 64
 FREE = "free"
 # Robots without a motor of the user's, by what they take.
 INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes for takes in Takes})
-DriveSpec = ActuatorSpec | FollowingSpec | TorqueInterfaceSpec
+DriveSpec = motion.ActuatorSpec | motion.FollowingSpec | motion.TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
 # What stands in the place of a controller in names of modes, and what it is.
@@ -122,16 +114,16 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     axis: AxisType = optional(
         "rotary: in rad, N*m and kg*m^2; prismatic: m, N and kg stand for those", AxisType.ROTARY
     )
-    actuator: ActuatorSpec | None = optional("the velocity-controlled motor; with motion_loop")
-    motion_loop: MotionLoopSpec | None = optional("the position loop around the motor")
-    velocity_interface: VelocityInterfaceSpec | None = optional(
+    actuator: motion.ActuatorSpec | None = optional("velocity-controlled motor; with motion_loop")
+    motion_loop: motion.MotionLoopSpec | None = optional("the position loop around the motor")
+    velocity_interface: motion.VelocityInterfaceSpec | None = optional(
         "a robot with a motion loop of its own that takes velocities; without actuator"
     )
-    position_interface: PositionInterfaceSpec | None = optional("the same for positions")
-    torque_interface: TorqueInterfaceSpec | None = optional(
+    position_interface: motion.PositionInterfaceSpec | None = optional("the same for positions")
+    torque_interface: motion.TorqueInterfaceSpec | None = optional(
         "a robot that takes torques, without actuator; for controllers of type torque-impedance"
     )
-    limits: LimitsSpec = required("what the interaction must respect")
+    limits: motion.LimitsSpec = required("what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = optional(
         "what the robot touches: name -> environment", {}
     )
@@ -194,12 +186,11 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        sampling = {} if self.sampling is None else {("sampling",): self.sampling}
-        return {
-            **{(key,): drive for key, drive in self.drives.items()},
-            **{("environments", name): item for name, item in self.environments.items()},
-            **sampling,
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {
+            (key,): drive for key, drive in self.drives.items()
         }
+        parts |= {("environments", name): item for name, item in self.environments.items()}
+        return parts if self.sampling is None else parts | {("sampling",): self.sampling}
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -228,7 +219,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         return {key: drive for key, drive in found.items() if drive is not None}
 
     @property
-    def followed(self) -> FollowingSpec | None:
+    def followed(self) -> motion.FollowingSpec | None:
         """The robot that closes its own motion loop, if it does."""
         return self.velocity_interface or self.position_interface
 
@@ -256,12 +247,13 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     @property
     def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
         """The numbers of what is touched and of the drive, by the keys that lead to them."""
-        touched = {
+        found: dict[tuple[str, ...], RangedQuantity] = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
             for key, quantity in self.environments[name].ranges.items()
         }
-        return {**touched, **self.motor_ranges}
+        found.update(self.motor_ranges.items())
+        return found
 
     @property
     def late_at(self) -> tuple[str, str] | None:

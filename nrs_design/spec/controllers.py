@@ -162,9 +162,7 @@ class ImpedanceControllerSpec(AbstractContactControllerSpec):
         unsaid="other",
     )
     Mt: field.InertiaGain = required("admittance inertia in kg*m^2, >= 0; or {min: ..., max: ...}")
-    Bt: field.DampingGain = required(
-        "admittance damping in N*m*s/rad, > 0; or {min: ..., max: ...}"
-    )
+    Bt: field.DampingGain = required("damping in N*m*s/rad, > 0; or {min: ..., max: ...}")
     Kt: field.SpringGain | None = optional(
         "admittance spring in N*m/rad, > 0, which draws the robot back to its position reference; "
         "default: no spring; with one, contact is kept unless the spec says `contact: losable`"
@@ -214,9 +212,7 @@ class AbstractForceSpec(AbstractContactControllerSpec):
     holds_force: ClassVar[bool] = True
 
     proportional_gain: field.ForceGain | None = optional("Kp in rad/(N*m), or damping_ratio")
-    damping_ratio: UnitFraction | None = optional(
-        "wanted for the dominant poles, without an integral, in (0, 1), no unit"
-    )
+    damping_ratio: UnitFraction | None = optional("wanted for the dominant poles, in (0, 1)")
 
 
 class ForceControllerSpec(AbstractForceSpec):
@@ -256,9 +252,7 @@ class IntegralControllerSpec(AbstractForceSpec):
         "while another controller is active, and stays in the command"
     )
     integral_gain: field.IntegralForceGain | None = optional("Ki in rad/(N*m*s), or settling_time")
-    settling_time: field.Duration | None = optional(
-        "time in s until the force error is 2 %: chooses Ki"
-    )
+    settling_time: field.Duration | None = optional("time in s to a force error of 2 %, for Ki")
     goals: GoalsSpec | None = optional(_GOALS)
 
     checks = (*exactly_one(_PROPORTIONAL), *exactly_one(_INTEGRAL))
@@ -272,14 +266,12 @@ class TorqueImpedanceSpec(AbstractContactControllerSpec):
     goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["torque-impedance"] = required(
-        "torque-impedance: mass, spring and damper to the commanded position; for a "
-        "torque_interface"
+        "torque-impedance: mass, spring and damper; for a torque_interface"
     )
     stiffness: field.RotationalStiffness = required("of the spring, in N*m/rad")
     damping: field.NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
     inertia_ratio: Positive | None = optional(
-        "wanted inertia over that of the joint, no unit; other than 1 it takes the force; "
-        "default: 1"
+        "wanted over actual inertia, no unit; other than 1 takes the force; default: 1"
     )
 
 
@@ -311,8 +303,7 @@ class AntiWindupSpec(SpecModel, stronger="neither"):
     """What keeps the integral of pi-force controllers from winding up."""
 
     clamp: field.Angle = required(
-        "largest integral w, both ways, at every sample, as an angle of the reference, such as 2 "
-        "deg"
+        "largest integral w, both ways, at every sample, as an angle, such as 2 deg"
     )
 
 

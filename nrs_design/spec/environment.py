@@ -231,8 +231,7 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         "phi, 1 to 3, three decimals, no unit; one number, or {nominal: ..., range: [...]}"
     )
     about: field.Deflection = required(
-        "deflection of stiffness and damping, in the preload: a length with lever_arm, else an "
-        "angle"
+        "deflection of stiffness and damping: a length with lever_arm, else an angle"
     )
     preload: tuple[field.Deflection, field.Deflection] = required(
         "[lowest, highest] deflection, counted from the surface, within which the proof holds"

@@ -50,9 +50,7 @@ _ORDERED = Row[SpecModel](
 class TransparencySpec(SpecModel, stronger="smaller"):
     """How little the surgeon shall feel of the robot, in free motion."""
 
-    max_impedance: field.Impedance = required(
-        "largest force of the hand over tool velocity, N*m*s/rad"
-    )
+    max_impedance: field.Impedance = required("largest force over velocity of the tool, N*m*s/rad")
     band: Band = required(_BAND, "wider")
     environment: ClassVar[str | None] = None  # Nothing is touched
 
@@ -130,12 +128,10 @@ class GoalsSpec(SpecModel, stronger="larger"):
         "largest displayed over desired impedance, or reverse, up to the bandwidth, above 1"
     )
     min_transparency: UnitFraction | None = optional(
-        "smallest |L/(1 + L)| up to the bandwidth, in (0, 1): motion of the robot over that of "
-        "the hand"
+        "smallest |L/(1 + L)| up to the bandwidth, in (0, 1): robot over hand motion"
     )
     max_hand_effort: field.Impedance | None = at_most(
-        "largest |Ze/(1 + L)| up to the bandwidth in N*m*s/rad: torque of the hand over its "
-        "velocity"
+        "largest |Ze/(1 + L)| up to the bandwidth in N*m*s/rad: hand torque over velocity"
     )
     max_creep: field.AngularVelocity | None = at_most(
         "largest velocity in free motion by errors of the sensor, such as 0.5 deg/s; impedance only"
@@ -149,12 +145,8 @@ class GoalsSpec(SpecModel, stronger="larger"):
     accuracy: AccuracySpec | None = optional(
         "proved: error of the tool velocity over a band; impedance controllers only"
     )
-    max_force_error: UnitFraction | None = at_most(
-        "largest steady force error over the force, in (0, 1)"
-    )
-    peak_torque: field.Torque | None = at_most(
-        "largest proved torque in N*m under all disturbances; of the spec"
-    )
+    max_force_error: UnitFraction | None = at_most("largest steady force error, a share in (0, 1)")
+    peak_torque: field.Torque | None = at_most("largest proved torque in N*m; of the whole spec")
     decay_rate: field.DecayRate | None = optional("smallest proved decay rate in 1/s; of the spec")
     delay: field.Duration | None = optional(
         "age of force samples to be proved, such as 4 ms; of the spec, with sampling"

@@ -24,6 +24,13 @@ CommandUnit = Literal["rpm", "V", "A", "counts"]
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
+_DEAD_TIME = (
+    "time in s for which a command does nothing, one number or [shortest, longest]; the proof adds "
+    "it to the latency of `sampling`"
+)
+_COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
+
+
 class ActuatorIntervals(SpecModel, stronger="neither"):
     """Confidence intervals of an identified actuator, for the record.
 
@@ -31,11 +38,9 @@ class ActuatorIntervals(SpecModel, stronger="neither"):
     """
 
     gain: tuple[field.ActuatorGain, field.ActuatorGain] = required(
-        "[lowest, highest] gain, such as rad/s/rpm, 95 % interval"
+        "[lowest, highest], as rad/s/rpm"
     )
-    time_constant: tuple[field.Duration, field.Duration] = required(
-        "[lowest, highest] time constant in s, 95 % interval"
-    )
+    time_constant: tuple[field.Duration, field.Duration] = required("[lowest, highest] in s")
 
 
 def commands_in(
@@ -69,18 +74,11 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
         "Km in rad/s/rpm or rad/s/V: theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: field.RangedDuration = required("tau, mechanical time constant in s")
-    dead_time: field.TimeRange | None = optional(
-        "time in s for which a command does nothing before the motor follows it, one number or "
-        "[shortest, longest]; the proof adds it to the latency of `sampling`"
-    )
+    dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     load_inertia: field.RotorInertia | None = optional(
-        "inertia in kg*m^2 at the joint that the torque of an environment slows; default: "
-        "unaffected"
+        "inertia at the joint in kg*m^2 that environments slow; default: none does"
     )
-    range_covers: Coverage | None = optional(
-        "what the identified ranges hold: confidence (the recorded motor), tolerance "
-        "(95 % of all records of such motors) or prediction (the next record), each with 95 %"
-    )
+    range_covers: Coverage | None = optional(_COVERS)
     intervals: ActuatorIntervals | None = optional(
         "95 % intervals of gain and time constant, for the record; no proof depends on them"
     )
@@ -109,13 +107,6 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
             "correct one of them",
         ),
     )
-
-
-_DEAD_TIME = (
-    "time in s for which a command does nothing before the robot follows it, one number or "
-    "[shortest, longest]; the proof adds it to the latency of `sampling`"
-)
-_COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
 
 
 class TransferFunctionSpec(SpecModel, stronger="neither"):
@@ -200,9 +191,7 @@ class MotionLoopSpec(SpecModel, stronger="neither"):
         "derivative gain, such as rpm*s/rad, in the unit of commands; default: from the root locus"
     )
     zero: field.Zero | None = optional("zero Kp/Kd of the PD in 1/s; default: from the root locus")
-    transfer_function: TransferFunctionSpec | None = optional(
-        "closed loop G instead of the PD's, no unit"
-    )
+    transfer_function: TransferFunctionSpec | None = optional("closed loop G instead, no unit")
 
 
 # How the name of an output begins that is held against `limits: {command: ...}`.

@@ -166,11 +166,7 @@ class ParameterSpec(SpecModel):
 
     nominal: _Value = required("value that is meant, an exact number, no unit")
     range: _Range = range_around("[lowest, highest] value that is proved; default: the nominal one")
-    varies: Switch = optional(
-        "true: may change arbitrarily fast within its range; false: unknown, but it "
-        "does not change",
-        True,
-    )
+    varies: Switch = optional("true: changes arbitrarily fast; false: an unknown constant", True)
 
     @property
     def fixed(self) -> bool:

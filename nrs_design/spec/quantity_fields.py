@@ -137,11 +137,7 @@ class RangedQuantity(SpecModel):
         "[lowest, highest] value that is proved; default: the nominal one"
     )
 
-    varies: Switch = optional(
-        "true: may change arbitrarily fast within its range; false: unknown, but it "
-        "does not change",
-        True,
-    )
+    varies: Switch = optional("true: changes arbitrarily fast; false: an unknown constant", True)
 
     checks = (
         *RANGE_CHECKS,

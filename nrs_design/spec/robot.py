@@ -79,9 +79,7 @@ class BodySpec(SpecModel, stronger="neither"):
 class LegSpec(SpecModel, stronger="neither"):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
-    azimuth: field.SignedAngle = required(
-        "direction of the base axis in the x-y plane, from x to y"
-    )
+    azimuth: field.SignedAngle = required("direction of the base axis, from x to y")
     elbow_sign: ElbowSign = required("-1: the elbow bends outwards (thesis 3.10); 1: inwards")
     l0: field.Length = required("pivot to base joint along the base axis, in m")
     l1: field.Length = required("length of the crank, in m")
@@ -147,9 +145,7 @@ class DriveSpec(SpecModel, stronger="neither"):
     rotor_inertia: field.MomentOfInertia = required("motor and gearhead, at the shaft, in kg*m^2")
     gearhead_ratio: Positive = required("motor turns per turn of the gearhead, no unit")
     capstan_ratio: Positive = required("gearhead turns per turn of the joint, no unit")
-    speed_torque_gradient: field.TorqueGradient = required(
-        "at the shaft, in rpm/(N*m) (thesis 4.10)"
-    )
+    speed_torque_gradient: field.TorqueGradient = required("at the shaft, rpm/(N*m) (thesis 4.10)")
     coulomb_friction: field.Command = required("dry friction as a command (thesis 4.1)")
     encoder_counts: Counts = required("counts of the encoder per turn of the gearhead's output")
 

@@ -62,8 +62,7 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
     period: field.Duration = required("time between two samples in s")
     delay: Delay = required("age of the force in samples: one number, or [smallest, largest]")
     latency: field.TimeRange | None = optional(
-        "time in s from a sample to its command, one number or [shortest, longest]; default: at "
-        "once"
+        "time in s from a sample to its command: one, or [shortest, longest]; default: at once"
     )
     jitter: field.Duration | None = optional("by how much, in s, a period may differ from `period`")
     outer_period: field.Duration | None = optional(
@@ -147,9 +146,7 @@ class DisturbancesSpec(SpecModel, stronger="larger"):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
     command: field.AngularVelocity | None = optional("largest velocity command in rad/s")
-    friction: field.DriveCommand | None = optional(
-        "largest Coulomb friction as a command, such as rpm"
-    )
+    friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")
     encoder_step: field.Angle | None = optional("resolution of the joint angle in rad")
     force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
 

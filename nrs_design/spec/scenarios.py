@@ -105,8 +105,7 @@ class CommandProfileSpec(SpecModel, stronger="unknown", unsaid="other"):
 
     constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
     points: Breakpoints | None = optional(
-        "[[time, velocity], ...] with straight lines between; the last is kept, a time twice is a "
-        "jump"
+        "[[time, velocity], ...], straight lines between; a time twice is a jump, the last is kept"
     )
     sinusoid: SinusoidSpec | None = optional("{amplitude: ..., frequency: ..., offset: ...}")
     csv: File | None = optional(
@@ -155,9 +154,7 @@ class ControlSpec(SpecModel, stronger="unknown", unsaid="other"):
 
     fixed: Label | None = optional("one controller all the time")
     schedule: Schedule | None = optional("[[0 s, insertion], [2 s, withdrawal], ...]")
-    sign: SignControlSpec | None = optional(
-        "{insertion: ..., withdrawal: ...}, by command and torque"
-    )
+    sign: SignControlSpec | None = optional("{insertion: ..., withdrawal: ...}, by the signs")
     contact: Annotated[dict[Label, Label], Field(min_length=1)] | None = optional(
         "environment -> controller, by the last contact (thesis 6.4), such as {soft: tissue}; the "
         "first one before any contact"

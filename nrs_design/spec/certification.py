@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
+from pydantic import Field
+
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ParsedBy, SpecModel, optional
@@ -45,3 +47,13 @@ class CertificationSpec(SpecModel, stronger="beside"):
     budget: Annotated[Fraction | None, ParsedBy(_read_budget, _BUDGET_SCHEMA)] = optional(
         "work of the search in units of about a second; at most 600, default 60"
     )
+
+
+# The default is made without validation, for which a validator of its own would be built.
+SearchExtent = Annotated[
+    CertificationSpec,
+    Field(
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
+    ),
+]

@@ -185,7 +185,7 @@ class ImpedanceControllerSpec(AbstractContactControllerSpec):
             "the design chooses Mt and Bt only",
             "give one quantity for both; `design: {{free: ...}}` frees it under proof",
         ),
-        *exclusive("desired_impedance", "desired_impedance_ratio"),
+        exclusive("desired_impedance", "desired_impedance_ratio"),
     )
 
 

@@ -222,16 +222,10 @@ def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
 
 def _weightless(spec: Spec) -> tuple[str, object] | None:
     """Return an admittance without inertia in the hand of someone."""
-    hand = has.HAND.find(spec)
-    for name, controller in spec.controllers.items():
-        inertia = controller.gains().get("Mt")
-        if (
-            isinstance(hand, has.ContactedEnvironment)
-            and inertia is not None
-            and not inertia.min.value
-        ):
-            return name, hand
-    return None
+    hand, inertias = has.HAND.find(spec), {n: c.gains() for n, c in spec.controllers.items()}
+    light = (n for n, gains in inertias.items() if "Mt" in gains and not gains["Mt"].min.value)
+    name = next(light, None)
+    return (name, hand) if hand and name else None
 
 
 def _constant_over_samples(spec: Spec) -> tuple[str, str, str, str] | None:

@@ -13,7 +13,7 @@ from pydantic import Field, ValidationInfo, field_validator
 from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
 from nrs_design.spec import motion
-from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.certification import SearchExtent
 from nrs_design.spec.check import Row
 from nrs_design.spec.controllers import (
     AntiWindupSpec,
@@ -161,11 +161,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = optional(
         "runs for `nrs-design simulate`: name -> scenario; no proof depends on them", {}
     )
-    # The default is made without validation, for which a validator of its own would be built.
-    certification: CertificationSpec = Field(
-        default_factory=CertificationSpec.model_construct,
-        description="how far the search for a proof goes",
-    )
+    certification: SearchExtent
 
     @field_validator("switching", mode="before")
     @classmethod

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.certification import SearchExtent
 from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
@@ -101,11 +101,7 @@ class SwitchedSystemSpec(SpecModel, stronger="unknown"):
         "what switches do to the state; default: nothing. Of several for one switch any may happen",
         (),
     )
-    # The default is made without validation, for which a validator of its own would be built.
-    certification: CertificationSpec = Field(
-        default_factory=CertificationSpec.model_construct,
-        description="how far the search for a proof goes",
-    )
+    certification: SearchExtent
 
     @property
     def dimension(self) -> int:
@@ -135,10 +131,6 @@ def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, ResetSpec, boo
     names = {mode.name for mode in spec.modes}
     for index, reset in enumerate(spec.resets):
         yield ("resets", index), reset, names >= {reset.source, reset.target}
-
-
-def _to_itself(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
-    return (((*at, "to"), reset.source == reset.target) for at, reset, _ in _resets(spec))
 
 
 def _not_allowed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
@@ -299,7 +291,11 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         "there is no mode of a step in time",
         "add the mode of a hit beside that of a miss",
     ),
-    refuse(_to_itself, "a switch leads to another mode", "name two modes"),
+    refuse(
+        lambda s: (((*at, "to"), r.source == r.target) for at, r, _ in _resets(s)),
+        "a switch leads to another mode",
+        "name two modes",
+    ),
     refuse(
         _not_allowed,
         "the switch from {0} to {1} is not allowed",

@@ -199,8 +199,9 @@ def _start(event: events.Event) -> Position:
 
 def _is_missing(event: events.Event) -> bool:
     """Tell whether an event is a scalar without a value."""
-    is_plain = isinstance(event, events.ScalarEvent) and event.style is None
-    return is_plain and bool(_NULL.fullmatch(event.value))
+    if not isinstance(event, events.ScalarEvent) or event.style is not None:
+        return False
+    return bool(_NULL.fullmatch(event.value))
 
 
 class _Builder:

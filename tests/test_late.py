@@ -8,7 +8,7 @@ from nrs_design.proof.evidence.growing_sequence import GrowingSequence
 
 
 def test_a_name_is_found_in_its_home():
-    find = late_names("nrs_design.proof.evidence", {"GrowingSequence": "growing_sequence"})
+    find = late_names("nrs_design.proof.evidence", {"growing_sequence": "GrowingSequence"})
     assert find("GrowingSequence") is GrowingSequence
 
 

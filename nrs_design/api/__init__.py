@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from nrs_design.api.study import load as load
     from nrs_design.api.worst import WorstFound as WorstFound
 
-_HOMES = {
-    name: module
-    for module, names in {
+__getattr__ = late_names(
+    __name__,
+    {
         "audit": "Audit AuditCheck",
         "decision": "Decision",
         "exported": "Exported",
@@ -39,7 +39,5 @@ _HOMES = {
         "simulation": "ScenarioRun Simulation",
         "study": "Study load",
         "worst": "WorstFound",
-    }.items()
-    for name in names.split()
-}
-__getattr__ = late_names(__name__, _HOMES)
+    },
+)

@@ -27,8 +27,9 @@ from nrs_design.design.root_locus import (
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
-from nrs_design.spec import Doubt, InteractionDesignSpec, doubt_spec, worst_first
+from nrs_design.spec import Doubt, InteractionDesignSpec, doubt_spec
 from nrs_design.spec.controllers import contact_names
+from nrs_design.spec.plausible import worst_first
 
 
 def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerDesign:

@@ -42,8 +42,9 @@ from nrs_design.proof.system import SwitchedSystem
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
-    from nrs_design.spec import InteractionDesignSpec, ModeSpec, Spec, SwitchedSystemSpec
+    from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
     from nrs_design.spec.misses import MissesSpec
+    from nrs_design.spec.switched_system import ModeSpec
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 

@@ -11,7 +11,8 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec import SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec.switching import DwellTime
 from nrs_design.spec.units import THESIS_COMMAND
 
 if TYPE_CHECKING:

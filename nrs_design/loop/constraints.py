@@ -18,9 +18,9 @@ from nrs_design.proof.evidence.fields import MAX_STATES
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import NOWHERE, Clock, Reset, Stay, Switching
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import DwellTime, SwitchingSpec
+from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.misses import MissAutomaton
-from nrs_design.spec.switching import ANY_SIGNAL
+from nrs_design.spec.switching import ANY_SIGNAL, DwellTime
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import Controller

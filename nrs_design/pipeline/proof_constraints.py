@@ -18,7 +18,7 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 if TYPE_CHECKING:
     from nrs_design.design.trust_region import Evaluation
     from nrs_design.proof.system import SwitchedSystem
-    from nrs_design.spec import GoalsSpec
+    from nrs_design.spec.goals import GoalsSpec
 
 STEP = 1e-3  # How far a coordinate moves for a slope
 NOTHING = -1e4  # The value where floating point finds no number

@@ -18,9 +18,6 @@ Indices = NDArray[np.int64]
 # From states, shape (..., n), to their norms, shape (...); twice the state has twice the norm.
 Norm = Callable[[Array], Array]
 
-_SAMPLES = 720
-_ROUNDS = 4
-
 
 def quadratic_norm(Q: Array) -> Norm:
     """Return ``sqrt(x' Q x)``; Q is symmetric and positive definite."""
@@ -69,18 +66,3 @@ def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:
     at = {corners[corner] for corners in system.switching.fixed_ends}
     modes = tuple(mode for mode in system.modes if mode.name in at)
     return system.with_modes(modes, system.states, Switching())
-
-
-def level_curve(norm: Norm, level: float) -> tuple[Array, Array]:
-    """Return points of a level curve in the plane.
-
-    The curve may be far from round, so the directions are adapted to the points found.
-    """
-    angle = np.linspace(0, 2 * np.pi, _SAMPLES + 1)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    shape: Array = np.diag(1 / norm(np.eye(2)))
-    for _ in range(_ROUNDS):
-        directions = circle @ shape.T
-        points = directions / norm(directions)[:, None]
-        shape = np.asarray(np.linalg.cholesky(points.T @ points))
-    return level * points[:, 0], level * points[:, 1]

@@ -10,7 +10,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices
-from nrs_design.simulation.switched import SwitchedRun, all_modes
+from nrs_design.simulation.switched import all_modes
 
 
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
@@ -32,16 +32,6 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
         return np.asarray(moved)
 
     return rates
-
-
-def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
-    """Return in which share of the steps of a run each signal is cut off, by its name."""
-    saturation = system.saturation
-    assert saturation is not None  # who asks has looked
-    signals = _signals(saturation, [row[run.mode] for row in _rows(saturation)], run.state[:-1])
-    names = (signal.name for signal in saturation.signals)
-    shares = (float(np.mean(cut != argument)) for argument, cut, _ in signals)
-    return dict(zip(names, shares, strict=True))
 
 
 def _rows(saturation: Saturation) -> list[Array]:

@@ -10,12 +10,9 @@ from nrs_design.late import late_names
 
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec as ControllerSpec
-    from nrs_design.spec.controllers import ForceControllerSpec as ForceControllerSpec
     from nrs_design.spec.controllers import IdleStatesSpec as IdleStatesSpec
     from nrs_design.spec.controllers import ImpedanceControllerSpec as ImpedanceControllerSpec
-    from nrs_design.spec.controllers import PositionControllerSpec as PositionControllerSpec
     from nrs_design.spec.exact import parse_exact as parse_exact
-    from nrs_design.spec.goals import GoalsSpec as GoalsSpec
     from nrs_design.spec.interaction import InteractionDesignSpec as InteractionDesignSpec
     from nrs_design.spec.load import LoadedSpec as LoadedSpec
     from nrs_design.spec.load import Spec as Spec
@@ -24,37 +21,24 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import read_spec as read_spec
     from nrs_design.spec.plausible import Doubt as Doubt
     from nrs_design.spec.plausible import doubt_spec as doubt_spec
-    from nrs_design.spec.plausible import worst_first as worst_first
     from nrs_design.spec.quantity import Quantity as Quantity
     from nrs_design.spec.quantity_fields import GainSpec as GainSpec
-    from nrs_design.spec.robot import BalancedLegSpec as BalancedLegSpec
-    from nrs_design.spec.robot import BodySpec as BodySpec
-    from nrs_design.spec.robot import DriveSpec as DriveSpec
-    from nrs_design.spec.robot import LegSpec as LegSpec
-    from nrs_design.spec.robot import RobotControlSpec as RobotControlSpec
     from nrs_design.spec.robot import RobotSpec as RobotSpec
-    from nrs_design.spec.switched_system import ModeSpec as ModeSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec as SwitchedSystemSpec
-    from nrs_design.spec.switching import DwellTime as DwellTime
     from nrs_design.spec.switching import SwitchingSpec as SwitchingSpec
 
-_HOMES = {
-    name: module
-    for module, names in {
-        "controllers": "ControllerSpec ForceControllerSpec IdleStatesSpec "
-        "ImpedanceControllerSpec PositionControllerSpec",
-        "plausible": "Doubt doubt_spec worst_first",
+__getattr__ = late_names(
+    __name__,
+    {
+        "controllers": "ControllerSpec IdleStatesSpec ImpedanceControllerSpec",
         "exact": "parse_exact",
-        "quantity_fields": "GainSpec",
-        "goals": "GoalsSpec",
         "interaction": "InteractionDesignSpec",
         "load": "LoadedSpec load_spec parse_spec read_spec",
+        "plausible": "Doubt doubt_spec",
         "quantity": "Quantity",
-        "robot": "BalancedLegSpec BodySpec DriveSpec LegSpec RobotControlSpec RobotSpec",
-        "switched_system": "ModeSpec SwitchedSystemSpec",
-        "switching": "DwellTime SwitchingSpec",
-    }.items()
-    for name in names.split()
-}
-
-__getattr__ = late_names(__name__, _HOMES)
+        "quantity_fields": "GainSpec",
+        "robot": "RobotSpec",
+        "switched_system": "SwitchedSystemSpec",
+        "switching": "SwitchingSpec",
+    },
+)

@@ -19,7 +19,6 @@ from nrs_design.models.drive import (
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
-from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.motion import FollowingSpec, TorqueInterfaceSpec
 from nrs_design.spec.quantity import Quantity
@@ -49,9 +48,8 @@ class OperatingConditions:
     idle: IdleStatesSpec | None  # What idle states do
     offset: Offset  # Where the offset of the force controllers is taken from
     sampling: SamplingSpec | None  # The processor; None in continuous time
-    command_delay: tuple[
-        Fraction, Fraction
-    ]  # Shortest and longest time from a sample to its command, in s
+    # Shortest and longest time in s from a sample to the moment when its command takes effect.
+    command_delay: tuple[Fraction, Fraction]
     constant_delay_key: str | None  # The key that says it, where it is unknown but constant
     disturbances: Bounds | None  # None where nothing is said to disturb
     largest_angle: Fraction | None  # Of the joint in rad, rounded up
@@ -90,13 +88,13 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
 def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, MotionLoop]:
     """Return the motion loop of a robot, and a lag about as slow where it is another."""
     one, G = Fraction(1), robot.transfer_function
-    if robot.time_constant is not None:
+    if G is not None:
+        loop = MotionLoop(G.numerator, G.denominator, given=True)
+        lag = Interval.point(abs(loop.delay) or one)
+    else:
+        assert robot.time_constant is not None, "a robot has one of them"
         lag = robot.time_constant.interval
         loop = MotionLoop((one,), (lag.nominal, one), given=True)
-        return ActuatorRanges(Interval.point(one), lag, command), loop
-    assert G is not None, "a robot has one of them"
-    loop = MotionLoop(G.numerator, G.denominator, given=True)
-    lag = Interval.point(abs(loop.delay) or one)
     return ActuatorRanges(Interval.point(one), lag, command), loop
 
 
@@ -118,7 +116,11 @@ def _torque(robot: TorqueInterfaceSpec, command: str) -> tuple[ActuatorRanges, F
 
 def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
     """Yield every environment of a spec, then what several are that are touched at once."""
-    known = {name: _environment(name, written) for name, written in spec.environments.items()}
+    known = {}
+    for name, written in spec.environments.items():
+        turned = written.linear_at_pivot()
+        ranges = tuple(turned[key] for key in written.law.keys)
+        known[name] = Environment(name, written.law, ranges, nonlinear=written.nonlinear)
     yield from known.values()
     contacts = (contact for c in spec.controllers.values() for contact in c.contacts)
     for contact in dict.fromkeys(contacts):
@@ -164,9 +166,3 @@ def _preloads(spec: InteractionDesignSpec) -> Iterator[tuple[str, Preload]]:
         law, ends = environment.nonlinear, environment.preload_range
         if law is not None and ends is not None and name in spec.touched:
             yield name, (law, ends[0].text, ends[1].text)
-
-
-def _environment(name: str, spec: AbstractEnvironmentSpec) -> Environment:
-    turned = spec.linear_at_pivot()
-    ranges = tuple(turned[key] for key in spec.law.keys)
-    return Environment(name, spec.law, ranges, nonlinear=spec.nonlinear)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
+from pydantic import Field
+
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ParsedBy, SpecModel, optional
@@ -40,10 +42,18 @@ class CertificationSpec(SpecModel, stronger="beside"):
     """How far the search for a proof goes; options of the commands override it."""
 
     max_degree: Annotated[int | None, ParsedBy(_read_degree, _DEGREE_SCHEMA)] = optional(
-        "highest degree of a polynomial Lyapunov function, even, at most 64; default: "
-        "as high as the budget allows"
+        "highest degree of a polynomial Lyapunov function: even, at most 64; default: by the budget"
     )
     budget: Annotated[Fraction | None, ParsedBy(_read_budget, _BUDGET_SCHEMA)] = optional(
-        "work of the search, counted in units of about a second, the same on every "
-        "machine; at most 600, default 60"
+        "work of the search in units of about a second; at most 600, default 60"
     )
+
+
+# The default is made without validation, for which a validator of its own would be built.
+SearchExtent = Annotated[
+    CertificationSpec,
+    Field(
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
+    ),
+]

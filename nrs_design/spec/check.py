@@ -127,15 +127,13 @@ def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
         raise as_error(found)
 
 
-def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
+def exclusive(one: str, other: str) -> Row[Any]:
     """Return the check that at most one of two keys is given."""
-    return (
-        Row(
-            other,
-            lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
-            f"{one} and {other} exclude each other",
-            "keep one of them",
-        ),
+    return Row(
+        other,
+        lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
+        f"{one} and {other} exclude each other",
+        "keep one of them",
     )
 
 
@@ -149,7 +147,7 @@ def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
             f"neither {one} nor {other} is given",
             f"add `{ways[one]}` or `{ways[other]}`",
         ),
-        *exclusive(one, other),
+        exclusive(one, other),
     )
 
 

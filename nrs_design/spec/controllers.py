@@ -79,9 +79,7 @@ _TOUCHED = (
 class CostWeights(SpecModel, stronger="neither"):
     """Weights of the two parts of the impedance cost (thesis 6.7)."""
 
-    displayed: Weight = optional(
-        "weight of the displayed-impedance error, >= 0, no unit", Fraction(1, 2)
-    )
+    displayed: Weight = optional("weight of the impedance error, >= 0, no unit", Fraction(1, 2))
     sensitivity: Weight = optional("weight of the mean sensitivity, >= 0, no unit", Fraction(1, 2))
 
     checks = (
@@ -131,7 +129,15 @@ class AbstractControllerSpec(SpecModel, stronger="neither"):
         return {name: value for name, value in self if isinstance(value, GainSpec)}
 
 
-class ImpedanceControllerSpec(AbstractControllerSpec):
+class AbstractContactControllerSpec(AbstractControllerSpec):
+    """What controllers have in common that touch something."""
+
+    type: str
+    environment: Label = required(_ENVIRONMENT, "unknown")
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
+
+
+class ImpedanceControllerSpec(AbstractContactControllerSpec):
     """Admittance ``1/(Mt s + Bt)`` that makes the robot display an impedance (thesis 6.3.1).
 
     With a spring it is ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2).
@@ -145,30 +151,21 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kt": None})
 
     type: Literal["impedance"] = required("impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     desired_impedance: field.Impedance | None = optional(
-        "impedance to display in N*m*s/rad; default: limits.torque/limits.velocity",
+        "impedance to display in N*m*s/rad; default: torque/velocity of limits",
         stronger="unknown",
         unsaid="other",
     )
     desired_impedance_ratio: Positive | None = optional(
-        "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance",
+        "desired impedance over torque/velocity of limits, no unit",
         stronger="unknown",
         unsaid="other",
     )
-    Mt: field.InertiaGain = required(
-        "admittance inertia in kg*m^2: one quantity, or {min: ..., max: ...} "
-        "for the design; 0 allowed"
-    )
-    Bt: field.DampingGain = required(
-        "admittance damping in N*m*s/rad: one quantity, or {min: ..., max: ...} for the design; > 0"
-    )
+    Mt: field.InertiaGain = required("admittance inertia in kg*m^2, >= 0; or {min: ..., max: ...}")
+    Bt: field.DampingGain = required("damping in N*m*s/rad, > 0; or {min: ..., max: ...}")
     Kt: field.SpringGain | None = optional(
-        "admittance spring in N*m/rad, which draws the robot back to its position "
-        "reference, a robot that takes velocities to where the command alone leads: one "
-        "quantity; > 0; default: no spring; with one, contact "
-        "is taken for kept unless the spec says `contact: losable`"
+        "admittance spring in N*m/rad, > 0, which draws the robot back to its position reference; "
+        "default: no spring; with one, contact is kept unless the spec says `contact: losable`"
     )
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"
@@ -188,7 +185,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
             "the design chooses Mt and Bt only",
             "give one quantity for both; `design: {{free: ...}}` frees it under proof",
         ),
-        *exclusive("desired_impedance", "desired_impedance_ratio"),
+        exclusive("desired_impedance", "desired_impedance_ratio"),
     )
 
 
@@ -208,28 +205,27 @@ def _just_one_of(*ways: dict[str, str]) -> ConfigDict:
     return ConfigDict(json_schema_extra={"oneOf": [{"required": [*k]} for k in product(*ways)]})
 
 
-class ForceControllerSpec(AbstractControllerSpec):
+class AbstractForceSpec(AbstractContactControllerSpec):
+    """A controller that holds a force, with a proportional gain."""
+
+    commands: ClassVar[Command] = "position"
+    holds_force: ClassVar[bool] = True
+
+    proportional_gain: field.ForceGain | None = optional("Kp in rad/(N*m), or damping_ratio")
+    damping_ratio: UnitFraction | None = optional("wanted for the dominant poles, in (0, 1)")
+
+
+class ForceControllerSpec(AbstractForceSpec):
     """Proportional force controller of the hybrid scheme (thesis 6.3.3)."""
 
     model_config = _just_one_of(_PROPORTIONAL)
-    commands: ClassVar[Command] = "position"
-    holds_force: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({"Kp": "damping_ratio"})
 
     type: Literal["force"] = required("force: u = X_i + Kp (Fd - F), see offset")
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: field.ForceGain | None = optional(
-        "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
-    )
-    damping_ratio: UnitFraction | None = optional(
-        "wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp"
-    )
     offset: Offset = optional(
-        "offset X_i that is added to the command (thesis 6.41), taken at every switch "
-        "of controllers and held until the next: the reference of the motion loop at the switch, "
-        "or the measured position; none: no switch takes anything, and u = X + Kp (Fd - F) with "
-        "the position X that is commanded from outside, constant while force is controlled",
+        "offset X_i of the command (thesis 6.41), held from one switch of controllers to the "
+        "next: the reference of the motion loop at the switch, or the measured position; none: u "
+        "= X + Kp (Fd - F) with a constant commanded position X",
         "none",
     )
     goals: GoalsSpec | None = optional(_GOALS)
@@ -242,43 +238,27 @@ class ForceControllerSpec(AbstractControllerSpec):
     checks = exactly_one(_PROPORTIONAL)
 
 
-class IntegralControllerSpec(AbstractControllerSpec):
+class IntegralControllerSpec(AbstractForceSpec):
     """Proportional and integral force controller whose integral bleeds in other modes."""
 
     model_config = _just_one_of(_PROPORTIONAL, _INTEGRAL)
-    commands: ClassVar[Command] = "position"
-    holds_force: ClassVar[bool] = True
     bleeds: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType(
         {"Kp": "damping_ratio", "Ki": "settling_time"}
     )
 
     type: Literal["pi-force"] = required(
-        "pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); while another "
-        "controller is active, w decays as idle_states says, and stays in the command meanwhile"
+        "pi-force: u = X + Kp (Fd - F) + w with w' = Ki (Fd - F); w decays as idle_states says "
+        "while another controller is active, and stays in the command"
     )
-    environment: Label = required(_ENVIRONMENT, "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: field.ForceGain | None = optional(
-        "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
-    )
-    damping_ratio: UnitFraction | None = optional(
-        "wanted damping ratio of the dominant poles without the integral, in (0, 1), "
-        "no unit; chooses Kp"
-    )
-    integral_gain: field.IntegralForceGain | None = optional(
-        "Ki in rad/(N*m*s); exactly one of integral_gain and settling_time"
-    )
-    settling_time: field.Duration | None = optional(
-        "time in s by which the force error has fallen to 2 %, four time constants of "
-        "the slowest pole; chooses Ki"
-    )
+    integral_gain: field.IntegralForceGain | None = optional("Ki in rad/(N*m*s), or settling_time")
+    settling_time: field.Duration | None = optional("time in s to a force error of 2 %, for Ki")
     goals: GoalsSpec | None = optional(_GOALS)
 
     checks = (*exactly_one(_PROPORTIONAL), *exactly_one(_INTEGRAL))
 
 
-class TorqueImpedanceSpec(AbstractControllerSpec):
+class TorqueImpedanceSpec(AbstractContactControllerSpec):
     """Impedance control of a robot that takes torques (thesis 2.2.6.1)."""
 
     commands: ClassVar[Command] = "position"
@@ -286,16 +266,12 @@ class TorqueImpedanceSpec(AbstractControllerSpec):
     goals: ClassVar[GoalsSpec | None] = None
 
     type: Literal["torque-impedance"] = required(
-        "torque-impedance: the joint moves as one of inertia_ratio times its inertia "
-        "on a spring and a damper to the commanded position; for a torque_interface"
+        "torque-impedance: mass, spring and damper; for a torque_interface"
     )
-    environment: Label = required("name of the environment that it touches", "unknown")
-    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     stiffness: field.RotationalStiffness = required("of the spring, in N*m/rad")
     damping: field.NonnegativeImpedance = required("of the damper, in N*m*s/rad; 0 allowed")
     inertia_ratio: Positive | None = optional(
-        "wanted inertia over that of the joint, no unit; other than 1 it takes the measured force; "
-        "default: 1"
+        "wanted over actual inertia, no unit; other than 1 takes the force; default: 1"
     )
 
 
@@ -315,14 +291,11 @@ class IdleStatesSpec(SpecModel, stronger="neither"):
     """What the states of impedance and pi-force controllers do while others are active."""
 
     decay: field.Decay = required(
-        "rate in 1/s at which the admittance velocity and the position reference "
-        "decay, and the integral of a pi-force controller; 0 1/s holds them, which is not "
-        "asymptotically stable by itself"
+        "rate in 1/s of the admittance velocity, the position reference and the integral of "
+        "pi-force controllers; 0 1/s holds them, which alone is not asymptotically stable"
     )
     reset: Switch = optional(
-        "true: they are set to zero when an impedance controller is left; not with "
-        "pi-force controllers, whose integral bleeds",
-        False,
+        "true: zero after an impedance controller; not with pi-force controllers", False
     )
 
 
@@ -330,8 +303,7 @@ class AntiWindupSpec(SpecModel, stronger="neither"):
     """What keeps the integral of pi-force controllers from winding up."""
 
     clamp: field.Angle = required(
-        "where the integral w is cut off, both ways, at every sample and under every "
-        "controller, as an angle of the reference, such as 2 deg"
+        "largest integral w, both ways, at every sample, as an angle, such as 2 deg"
     )
 
 

@@ -57,8 +57,8 @@ class Line(NamedTuple):
 
     name: str
     written: str
-    value: str
-    unit: str
+    value: str = ""
+    unit: str = ""
 
 
 def describe(spec: Spec) -> tuple[Line, ...]:
@@ -86,14 +86,14 @@ def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[
 
 
 def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
-    yield Line("time", spec.time, "", "")
+    yield Line("time", spec.time)
     yield from _switching(spec.switching)
     for name, parameter in spec.parameters.items():
         yield _number(f"parameters.{name}", parameter.nominal)
         if not parameter.fixed:
             yield _coefficients(f"parameters.{name}.range", parameter.range)
             change = "arbitrarily fast" if parameter.varies else "unknown, but constant"
-            yield Line(f"parameters.{name}.varies", str(parameter.varies).lower(), change, "")
+            yield Line(f"parameters.{name}.varies", str(parameter.varies).lower(), change)
     unit = "1/s" if spec.time == "continuous" else ""
     for index, mode in enumerate(spec.modes):
         n = mode.dimension
@@ -101,19 +101,19 @@ def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:
         yield Line(f"modes[{index}]", mode.name, depends, unit)
     for index, reset in enumerate(spec.resets):
         shape = f"{reset.shape[0]} x {reset.shape[1]}"
-        yield Line(f"resets[{index}]", f"{reset.source} to {reset.target}", shape, "")
+        yield Line(f"resets[{index}]", f"{reset.source} to {reset.target}", shape)
 
 
 def _switching(switching: SwitchingSpec) -> Iterator[Line]:
     if switching.is_arbitrary:
-        yield Line("switching", str(switching), "", "")
+        yield Line("switching", str(switching))
     for at, dwell in switching.dwell_times():
         name = ".".join(("switching", *at))
         yield Line(name, dwell.text, _text(float(dwell.value)), dwell.unit)
     if switching.transitions is not None:
         pairs = [f"{source} to {target}" for source, target in switching.transitions]
         listed = ", ".join(pairs[:MAX_LISTED]) + ", ..." * (len(pairs) > MAX_LISTED)
-        yield Line("switching.transitions", listed or "no switch", str(len(pairs)), "")
+        yield Line("switching.transitions", listed or "no switch", str(len(pairs)))
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
@@ -123,12 +123,12 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from _controller(f"controllers.{name}", controller, spec.limits)
     for key in _OTHERS:
         yield from describe_model(getattr(spec, key), key)
-    yield Line("contact", spec.contact or "not said: the claim tells", "", "")
+    yield Line("contact", spec.contact or "not said: the claim tells")
     yield from _switching(spec.switching)
 
 
 def _environment(name: str, environment: AbstractEnvironmentSpec) -> Iterator[Line]:
-    yield Line(f"{name}.model", environment.model, "", "")
+    yield Line(f"{name}.model", environment.model)
     turned = environment.exact_at_pivot()
     parameters = environment.ranges
     for key, written in parameters.items():
@@ -152,7 +152,7 @@ def _identified(name: str, item: SpecModel) -> Iterator[Line]:
     for key in (key for key in _IDENTIFIED if key in type(item).model_fields):
         value = getattr(item, key)
         if key == "range_covers" and value is not None:
-            yield Line(f"{name}.{key}", value, covers[value], "")
+            yield Line(f"{name}.{key}", value, covers[value])
         elif key != "range_id":
             yield from describe_model(value, f"{name}.{key}")
 
@@ -164,7 +164,7 @@ def _ranged(name: str, written: RangedQuantity, si: Interval, unit: str) -> Iter
         value = _ends(float(si.low), float(si.high))
         yield Line(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
     if not written.varies:
-        yield Line(f"{name}.varies", "false", "unknown, but constant", "")
+        yield Line(f"{name}.varies", "false", "unknown, but constant")
 
 
 def _ends(low: float, high: float) -> str:
@@ -172,11 +172,11 @@ def _ends(low: float, high: float) -> str:
 
 
 def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Line]:
-    yield Line(f"{name}.type", controller.type, "", "")
+    yield Line(f"{name}.type", controller.type)
     if controller.environment is None:
         return
-    yield Line(f"{name}.environment", controller.environment, "", "")
-    yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)), "", "")
+    yield Line(f"{name}.environment", controller.environment)
+    yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)))
     yield from _desired_impedance(f"{name}.desired_impedance", controller.displayed, limits)
     for key in type(controller).model_fields:
         if key not in _LISTED:
@@ -206,12 +206,12 @@ def _desired_impedance(
 
 
 def _number(name: str, number: Fraction) -> Line:
-    return Line(name, exact_text(number), _text(float(number)), "")
+    return Line(name, exact_text(number), _text(float(number)))
 
 
 def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
     value = ", ".join(_text(float(number)) for number in numbers)
-    return Line(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]", "")
+    return Line(name, f"[{', '.join(map(exact_text, numbers))}]", f"[{value}]")
 
 
 def describe_model(value: object, name: str = "") -> Iterator[Line]:
@@ -221,7 +221,7 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
     elif isinstance(value, RangedQuantity):
         yield from _ranged(name, value, value.interval, _shown_unit(value.nominal))
     elif isinstance(value, ProvenanceSpec):
-        yield Line(name, value.file, value.data, "")
+        yield Line(name, value.file, value.data)
     elif isinstance(value, GainSpec):
         low, high, unit = value.min, value.max, _shown_unit(value.min)
         if value.fixed:
@@ -231,9 +231,9 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
     elif isinstance(value, Times):
         first, last = value.shortest.text, value.longest.text
         how = "unknown, but constant" if value.is_constant else ""
-        yield Line(name, first if first == last else f"[{first}, {last}]", how, "")
+        yield Line(name, first if first == last else f"[{first}, {last}]", how)
     elif isinstance(value, DeadlinesSpec):
-        yield Line(name, f"at most {value}", f"command: {value.command}, job: {value.job}", "")
+        yield Line(name, f"at most {value}", f"command: {value.command}, job: {value.job}")
     elif isinstance(value, SpecModel):
         hidden = () if name else ("kind", "name", "title")
         for field in type(value).model_fields:
@@ -243,13 +243,11 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
     elif isinstance(value, dict):
         for key, item in value.items():
             yield from describe_model(item, f"{name}.{key}")
-    elif isinstance(value, tuple) and all(isinstance(item, Fraction) for item in value):
-        if value:
-            yield _coefficients(name, value)
-    elif isinstance(value, tuple) and all(isinstance(item, int) for item in value):
-        if value:
-            least, most = value
-            yield Line(name, str(least) if least == most else f"[{least}, {most}]", "", "samples")
+    elif isinstance(value, tuple) and {*map(type, value)} == {Fraction}:
+        yield _coefficients(name, value)
+    elif isinstance(value, tuple) and {*map(type, value)} == {int}:
+        least, most = value
+        yield Line(name, str(least) if least == most else f"[{least}, {most}]", "", "samples")
     elif isinstance(value, tuple):
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")
@@ -258,10 +256,10 @@ def describe_model(value: object, name: str = "") -> Iterator[Line]:
     elif isinstance(value, Fraction):
         yield _number(name, value)
     elif isinstance(value, bool):
-        yield Line(name, str(value).lower(), "", "")
+        yield Line(name, str(value).lower())
     # The unit of commands where none is named.
     elif value not in (None, THESIS_COMMAND):
-        yield Line(name, str(value), "", "")
+        yield Line(name, str(value))
 
 
 def si_unit(dimension: tuple[int, ...]) -> str:

@@ -15,18 +15,8 @@ from functools import partial
 from pathlib import Path
 from typing import NoReturn
 
-from ruamel.yaml import YAML
+from ruamel.yaml import YAML, events
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.events import (
-    AliasEvent,
-    CollectionEndEvent,
-    DocumentStartEvent,
-    Event,
-    MappingStartEvent,
-    NodeEvent,
-    ScalarEvent,
-    SequenceStartEvent,
-)
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.files import is_page, open_regular
@@ -202,9 +192,16 @@ def _position(text: str, index: int) -> Position:
     return Position(len(before) + 1, len(line) + 1)
 
 
-def _start(event: Event) -> Position:
+def _start(event: events.Event) -> Position:
     mark = event.start_mark
     return Position(mark.line + 1, mark.column + 1)
+
+
+def _is_missing(event: events.Event) -> bool:
+    """Tell whether an event is a scalar without a value."""
+    if not isinstance(event, events.ScalarEvent) or event.style is not None:
+        return False
+    return bool(_NULL.fullmatch(event.value))
 
 
 class _Builder:
@@ -219,7 +216,7 @@ class _Builder:
     def build(self) -> Node:
         root: Node | None = None
         for event in self._events:
-            if isinstance(event, NodeEvent):
+            if isinstance(event, events.NodeEvent):
                 root = self._node(event)
         if root is None:
             self._fail("the file holds no document", Position(1, 1), "start from `nrs-design init`")
@@ -236,7 +233,7 @@ class _Builder:
         self._note(message, place, remedy)
         raise SpecError.of(self.faults, self._path)
 
-    def _raw_events(self) -> Iterator[Event]:
+    def _raw_events(self) -> Iterator[events.Event]:
         """Parser events; every way in which the parser gives up becomes a SpecError."""
         index = 0
         try:
@@ -256,22 +253,22 @@ class _Builder:
             place, remedy = _position(self._text, index), "check escapes and directives"
             self._fail("this is not valid YAML", place, remedy)
 
-    def _checked_events(self) -> Iterator[Event]:
+    def _checked_events(self) -> Iterator[events.Event]:
         self._check_size()
         depth = documents = nodes = 0
         for event in self._raw_events():
             place = _start(event)
-            nodes += isinstance(event, NodeEvent)
+            nodes += isinstance(event, events.NodeEvent)
             if nodes > MAX_NODES:
                 self._fail_large(place)
-            if isinstance(event, DocumentStartEvent):
+            if isinstance(event, events.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
                     self._fail("the file holds several documents", place, "keep one, without ---")
-            elif isinstance(event, NodeEvent):
+            elif isinstance(event, events.NodeEvent):
                 self._check_node(event, place)
-            depth += isinstance(event, SequenceStartEvent | MappingStartEvent)
-            depth -= isinstance(event, CollectionEndEvent)
+            depth += isinstance(event, events.SequenceStartEvent | events.MappingStartEvent)
+            depth -= isinstance(event, events.CollectionEndEvent)
             if depth > MAX_DEPTH:
                 self._fail(f"nested deeper than {MAX_DEPTH} levels", place, "flatten the spec")
             yield event
@@ -296,36 +293,36 @@ class _Builder:
         message = f"a text of {length} characters stands here, at most {MAX_SCALAR} are read"
         self._fail(message, place, "shorten it")
 
-    def _check_node(self, event: NodeEvent, place: Position) -> None:
-        if isinstance(event, ScalarEvent) and len(event.value) > MAX_SCALAR:
+    def _check_node(self, event: events.NodeEvent, place: Position) -> None:
+        if isinstance(event, events.ScalarEvent) and len(event.value) > MAX_SCALAR:
             self._fail_long(len(event.value), place)
-        if isinstance(event, AliasEvent):
+        if isinstance(event, events.AliasEvent):
             self._note("aliases (*name) are not read", place, "write the value out")
         if event.anchor is not None:
             self._note("anchors (&name) are not read", place, "remove the anchor")
         if getattr(event, "tag", None) is not None:
             self._note("tags (!name) are not read", place, "remove the tag")
-        if isinstance(event, ScalarEvent) and _SURROGATE.search(event.value):
+        if isinstance(event, events.ScalarEvent) and _SURROGATE.search(event.value):
             self._note("a lone surrogate is not text", place, "remove the escape")
 
-    def _node(self, event: NodeEvent) -> Node:
+    def _node(self, event: events.NodeEvent) -> Node:
         place = _start(event)
-        if isinstance(event, AliasEvent):
+        if isinstance(event, events.AliasEvent):
             return Scalar("", place)
-        if isinstance(event, ScalarEvent):
-            if event.style is None and _NULL.fullmatch(event.value):
-                self._note("a value is missing here", place, "write a value or remove the key")
+        if _is_missing(event):
+            self._note("a value is missing here", place, "write a value or remove the key")
+        if isinstance(event, events.ScalarEvent):
             return Scalar(event.value, place)
-        if isinstance(event, SequenceStartEvent):
+        if isinstance(event, events.SequenceStartEvent):
             return Sequence(tuple(self._node(item) for item in self._children()), place)
         return self._mapping(place)
 
-    def _children(self) -> Iterator[NodeEvent]:
+    def _children(self) -> Iterator[events.NodeEvent]:
         """Start events of the nodes within the open collection."""
         for event in self._events:
-            if isinstance(event, CollectionEndEvent):
+            if isinstance(event, events.CollectionEndEvent):
                 return
-            if isinstance(event, NodeEvent):
+            if isinstance(event, events.NodeEvent):
                 yield event
 
     def _mapping(self, place: Position) -> Mapping:
@@ -346,8 +343,8 @@ class _Builder:
                 keys[key], entries[key] = key_place, value
         return Mapping(entries, keys, place)
 
-    def _key(self, event: NodeEvent, place: Position) -> str:
-        if not isinstance(event, ScalarEvent):
+    def _key(self, event: events.NodeEvent, place: Position) -> str:
+        if not isinstance(event, events.ScalarEvent):
             self._fail("a key must be text", place, "write `key: value`")
         key: str = event.value
         if event.style is not None:
@@ -358,9 +355,9 @@ class _Builder:
             self._note(f"the key {quoted(key)} is not text", place, "put it in quotes or rename it")
         return key
 
-    def _value(self, key: str, key_place: Position, event: NodeEvent) -> Node:
+    def _value(self, key: str, key_place: Position, event: events.NodeEvent) -> Node:
         """Read the value of a key; a missing one is reported where the key stands."""
-        if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
+        if _is_missing(event):
             remedy = "write a value or remove the key"
             if key[:1].isdigit():
                 # Nothing else is said then: the number before the comma seems to lack its unit.

@@ -55,26 +55,28 @@ def changed(root: Node, at: Keys, said: Data | None) -> Node:
     The mapping or list above the place is there; a key that it lacks goes last. None leaves the key
     or the item out.
     """
+    node = _changed(root, at, said, root.position)
+    assert node is not None, "a document is never left out"
+    return node
+
+
+def _changed(node: Node | None, at: Keys, said: Data | None, place: Position) -> Node | None:
+    if not at:
+        return None if said is None else _node(said, place if node is None else node.position)
+    assert not isinstance(node, Scalar | None)
     first, rest = at[0], at[1:]
-    if isinstance(root, Sequence) and isinstance(first, int):
-        before, after = root.items[:first], root.items[first + 1 :]
-        item = _under(root.items[first], rest, said, root.position)
-        return Sequence((*before, *(() if item is None else (item,)), *after), root.position)
-    assert isinstance(root, Mapping)
-    assert isinstance(first, str)
-    place = root.keys.get(first, root.position)
-    value = _under(root.entries.get(first), rest, said, place)
-    entries = {key: old for key, old in root.entries.items() if key != first or value is not None}
+    if isinstance(node, Sequence):
+        assert isinstance(first, int)
+        item = _changed(node.items[first], rest, said, node.position)
+        kept = () if item is None else (item,)
+        return Sequence((*node.items[:first], *kept, *node.items[first + 1 :]), node.position)
+    key = str(first)
+    place = node.keys.get(key, node.position)
+    value = _changed(node.entries.get(key), rest, said, place)
+    entries = {name: old for name, old in node.entries.items() if name != key or value is not None}
     if value is not None:
-        entries[first] = value
-    return Mapping(entries, {key: root.keys.get(key, place) for key in entries}, root.position)
-
-
-def _under(node: Node | None, rest: Keys, said: Data | None, place: Position) -> Node | None:
-    if rest:
-        assert node is not None
-        return changed(node, rest, said)
-    return None if said is None else _node(said, place if node is None else node.position)
+        entries[key] = value
+    return Mapping(entries, {name: node.keys.get(name, place) for name in entries}, node.position)
 
 
 def _node(said: Data, place: Position) -> Node:

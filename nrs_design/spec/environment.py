@@ -9,17 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 from pydantic import Discriminator
 
 from nrs_design.axis import AxisType, current
-from nrs_design.models.contact import (
-    AbstractContactLaw,
-    AbstractLinearLaw,
-    AbstractNonlinearLaw,
-    Elastic,
-    Hand,
-    HuntCrossley,
-    KelvinBoltzmann,
-    KelvinVoigt,
-    Maxwell,
-)
+from nrs_design.models import contact
 from nrs_design.models.contact.law import DAMPING
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
@@ -57,17 +47,15 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 
     # The law that designs and proofs take, and its own where that is not linear: the former stands
     # for it while the deflection stays in a preload, off its surface, and no more.
-    law: ClassVar[type[AbstractLinearLaw]]
-    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = None
+    law: ClassVar[type[contact.AbstractLinearLaw]]
+    nonlinear: ClassVar[type[contact.AbstractNonlinearLaw] | None] = None
 
     model: str
 
     lever_arm: field.LeverArm | None = optional(_LEVER_ARM)
     range_covers: Coverage | None = optional(_COVERS, stronger="neither")
     linearized_about: Title | None = optional(
-        "deflections that a nonlinear law was linearized about, in words: the ranges "
-        "hold small motions there",
-        stronger="neither",
+        "deflections, in words, that a nonlinear law was linearized about", stronger="neither"
     )
 
     def _without_arm(self) -> Iterator[tuple[Location, str]]:
@@ -165,7 +153,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 class ElasticSpec(AbstractEnvironmentSpec):
     """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = Elastic
+    law = contact.Elastic
 
     model: Literal["elastic"] = required("law of the environment: elastic, F = k delta")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
@@ -174,11 +162,9 @@ class ElasticSpec(AbstractEnvironmentSpec):
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
+    law = contact.KelvinVoigt
 
-    model: Literal["kelvin-voigt"] = required(
-        "law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
-    )
+    model: Literal["kelvin-voigt"] = required("law: kelvin-voigt, F = k delta + b ddelta/dt")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
     damping: field.Damping = required(_DAMPING.format(which=""))
 
@@ -186,28 +172,26 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = Hand
+    law = contact.Hand
 
     model: Literal["hand"] = required(
-        "law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
-        "holds the robot, so contact is kept"
+        "law: hand, F = k delta + b ddelta/dt + m d2delta/dt2; contact is kept"
     )
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
     damping: field.Damping = required(_DAMPING.format(which=""))
     mass: field.HandMass = required(
-        "mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
-        "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
+        "mass at the pivot in kg*m^2, or at the contact point in kg with lever_arm; one quantity, "
+        "or {nominal: ..., range: [lowest, highest]}"
     )
 
 
 class MaxwellSpec(AbstractEnvironmentSpec):
     """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = Maxwell
+    law = contact.Maxwell
 
     model: Literal["maxwell"] = required(
-        "law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
-        "rest position, and must be the only environment that controllers touch"
+        "law: maxwell, F + (b/k) dF/dt = b ddelta/dt; no rest position, so nothing else is touched"
     )
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=" k of the spring"))
     damping: field.PositiveDamping = required(_DAMPING.format(which=" b of the damper, > 0,"))
@@ -216,11 +200,10 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = KelvinBoltzmann
+    law = contact.KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = required(
-        "law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
-        "k1 beside a damper b"
+        "law: kelvin-boltzmann, a spring k2 in a row with a spring k1 beside a damper b"
     )
     parallel_stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" k1 of the spring beside the damper,")
@@ -234,24 +217,21 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 class HuntCrossleySpec(AbstractEnvironmentSpec):
     """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
 
-    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
-    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = HuntCrossley
+    law = contact.KelvinVoigt
+    nonlinear = contact.HuntCrossley
 
     model: Literal["hunt-crossley"] = required(
-        "law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
-        "while its deflection stays in the preload"
+        "law: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi within the preload"
     )
     stiffness: field.Stiffness = required(
         _STIFFNESS.format(which=" of small motions at the deflection `about`,")
     )
     damping: field.Damping = required(_DAMPING.format(which=" at the deflection `about`,"))
     exponent: RangedExponent = required(
-        "phi, 1 to 3 with at most three decimals, no unit; one number, or "
-        "{nominal: ..., range: [lowest, highest]}"
+        "phi, 1 to 3, three decimals, no unit; one number, or {nominal: ..., range: [...]}"
     )
     about: field.Deflection = required(
-        "deflection at which stiffness and damping are given, within the preload: a "
-        "length with lever_arm, an angle otherwise"
+        "deflection of stiffness and damping: a length with lever_arm, else an angle"
     )
     preload: tuple[field.Deflection, field.Deflection] = required(
         "[lowest, highest] deflection, counted from the surface, within which the proof holds"
@@ -318,7 +298,7 @@ EnvironmentSpec = Annotated[
     Discriminator("model"),
 ]
 # Laws that a spec may name: those of designs, and nonlinear ones.
-ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
+ENVIRONMENT_LAWS: tuple[type[contact.AbstractContactLaw], ...] = tuple(
     law
     for model in get_args(get_args(EnvironmentSpec)[0])
     for law in (model.law, model.nonlinear)
@@ -326,21 +306,23 @@ ENVIRONMENT_LAWS: tuple[type[AbstractContactLaw], ...] = tuple(
 )
 
 
+# Stiffness, damping and mass at the contact point, and what they are at the pivot.
+_TURNED = (
+    (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
+    (kinds.LINEAR_DAMPING, kinds.DAMPING),
+    (kinds.MASS, kinds.HAND_MASS),
+)
+
+
 def unit_at_pivot(quantity: Quantity) -> str:
     """Return the unit of a stiffness, damping or mass at the pivot."""
-    each = (
-        (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
-        (kinds.LINEAR_DAMPING, kinds.DAMPING),
-        (kinds.MASS, kinds.HAND_MASS),
-    )
     return next(
         turned.on(current()).units[0]
-        for linear, turned in each
+        for linear, turned in _TURNED
         if linear.accepts(quantity.dimension) or turned.accepts(quantity.dimension)
     )
 
 
 def is_translational(quantity: Quantity) -> bool:
-    """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
-    linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
-    return any(kind.accepts(quantity.dimension) for kind in linear)
+    """Tell whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
+    return any(linear.accepts(quantity.dimension) for linear, _ in _TURNED)

@@ -97,13 +97,19 @@ def parse_affine(text: str) -> Affine:
         return Affine(parse_exact(text))
     if fault := number_fault(text):
         raise fault
-    if re.search(r"\^|\*\*", text):
-        raise _not_affine("it takes a power")
     try:
+        if re.search(r"\^|\*\*", text):
+            raise ArithmeticError("it takes a power")
         function = read_algebra(text, _LEAF, _read_leaf, _OPERATORS)
     except ValueError:
         message = f"{quoted(text)} is not a number or an expression"
         raise SpecError(message, remedy=_EXPECTED) from None
+    except ZeroDivisionError:
+        message = f"{quoted(text)} divides by zero"
+        raise SpecError(message, remedy="use a nonzero divisor") from None
+    except ArithmeticError as error:
+        message = f"{quoted(text)} is not affine in the parameters: {error}"
+        raise SpecError(message, remedy=_OWN_PARAMETER) from None
     # No float holds more: each literal is capped, but products of them grow.
     if any(abs(number) > LARGEST for number in function.numbers):
         raise SpecError(
@@ -121,14 +127,12 @@ def _multiply(left: Affine, right: Affine) -> Affine:
         return right.times(left.constant)
     if right.is_constant:
         return left.times(right.constant)
-    raise _not_affine(f"it multiplies {left.names[0]} by {right.names[0]}")
+    raise ArithmeticError(f"it multiplies {left.names[0]} by {right.names[0]}")
 
 
 def _divide(left: Affine, right: Affine) -> Affine:
     if not right.is_constant:
-        raise _not_affine(f"it divides by {right.names[0]}")
-    if right.constant == 0:
-        raise SpecError("the entry divides by zero", remedy="use a nonzero divisor")
+        raise ArithmeticError(f"it divides by {right.names[0]}")
     return left.times(1 / right.constant)
 
 
@@ -140,8 +144,3 @@ _OPERATORS: Operators[Affine] = {
     ast.Mult: _multiply,
     ast.Div: _divide,
 }
-
-
-def _not_affine(reason: str) -> SpecError:
-    message = f"the entry is not affine in the parameters: {reason}"
-    return SpecError(message, remedy=_OWN_PARAMETER)

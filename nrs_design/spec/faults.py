@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -60,22 +60,28 @@ def as_error(found: list[dict[str, Any]]) -> PydanticCustomError:
     return PydanticCustomError(FAULT, "{message}", {**found[0], "all": found})
 
 
+def nearest(word: str, choices: Collection[str], called: Sequence[str] = ()) -> str | None:
+    """Return the choice that a mistyped word means; `called` are choices with another such name."""
+    alike = [choice for choice in choices if choice.lower() == word.lower()]
+    # What is mistyped rarely begins with another letter: `coupling` is no `sampling`.
+    begun = [choice for choice in choices if choice[:1].lower() == word[:1].lower()]
+    near = alike or called or difflib.get_close_matches(word, begun, n=1)
+    return near[0] if near else None
+
+
 def did_you_mean(
     word: str,
     choices: Collection[str],
     noun: str = "write one of",
-    called: list[str] | tuple[()] = (),
+    called: Sequence[str] = (),
 ) -> str:
     """Suggest the nearest choice, and list them all if they are few.
 
     `noun` begins the list; `called` are choices that are called so elsewhere.
     """
-    alike = [choice for choice in choices if choice.lower() == word.lower()]
     if not choices:
         return "there is none yet: add it"
-    # What is mistyped rarely begins with another letter: `coupling` is no `sampling`.
-    begun = [choice for choice in choices if choice[:1].lower() == word[:1].lower()]
-    near = alike or called or difflib.get_close_matches(word, begun, n=1)
+    near = nearest(word, choices, called)
     more = ", ..." * (len(choices) > MAX_LISTED)
     listing = f"{noun} {', '.join(islice(choices, MAX_LISTED))}{more}"
-    return f"did you mean {near[0]}? {listing}" if near else listing
+    return f"did you mean {near}? {listing}" if near else listing

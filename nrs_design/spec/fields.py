@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import Annotated, Any
 
 from nrs_design.files import is_device_name
@@ -80,12 +81,7 @@ def _read_name(value: object, pattern: str) -> str:
     return text
 
 
-def _read_label(value: object) -> str:
-    return _read_name(value, LABEL_PATTERN)
-
-
-def _text(pattern: str, schema: dict[str, Any]) -> ParsedBy:
-    return ParsedBy(lambda value: _read_name(value, pattern), schema)
+_read_label = partial(_read_name, pattern=LABEL_PATTERN)
 
 
 def read_title(value: object) -> str:
@@ -114,8 +110,9 @@ AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1")]
 BelowTwo = Annotated[Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2")]
 # Significant digits: a float32 holds no more.
 Digits = Annotated[int, whole(1, 7)]
-Name = Annotated[str, _text(NAME_PATTERN, {"type": "string", "pattern": NAME_PATTERN})]
-Label = Annotated[str, _text(LABEL_PATTERN, _LABEL)]
+_NAME = {"type": "string", "pattern": NAME_PATTERN}
+Name = Annotated[str, ParsedBy(partial(_read_name, pattern=NAME_PATTERN), _NAME)]
+Label = Annotated[str, ParsedBy(_read_label, _LABEL)]
 
 
 def read_contact(value: object) -> Contact:

@@ -38,62 +38,40 @@ def _below_half_turn(angle: Quantity) -> Quantity:
 class GoalsSpec(SpecModel, stronger="larger"):
     """Goals of the design; docs/design/goals.md defines each, and where it is evaluated."""
 
-    max_sensitivity_peak: AboveOne | None = at_most(
-        "largest Ms = max |1/(1 + L)|, above 1, no unit"
-    )
-    min_gain_margin: AboveOne | None = optional(
-        "smallest factor on the loop gain that destabilizes, above 1"
-    )
+    max_sensitivity_peak: AboveOne | None = at_most("largest Ms = max |1/(1 + L)|, above 1")
+    min_gain_margin: AboveOne | None = optional("smallest gain margin, a factor above 1")
     min_phase_margin: Annotated[field.Phase, AfterValidator(_below_half_turn)] | None = optional(
         "smallest phase margin, such as 30 deg"
     )
-    min_delay_margin: field.Duration | None = optional(
-        "longest dead time up to which none destabilizes, such as 5 ms"
-    )
-    min_disk_margin: BelowTwo | None = optional(
-        "smallest balanced disk margin, between 0 and 2, no unit"
-    )
+    min_delay_margin: field.Duration | None = optional("smallest delay margin, such as 5 ms")
+    min_disk_margin: BelowTwo | None = optional("smallest balanced disk margin, between 0 and 2")
     max_impedance_error: AboveOne | None = at_most(
-        "largest factor between displayed and desired impedance up to the bandwidth, "
-        "above 1, no unit; impedance controllers only"
+        "largest displayed over desired impedance, or reverse, up to the bandwidth, above 1"
     )
     min_transparency: UnitFraction | None = optional(
-        "smallest share of the motion that the hand intends and the robot makes, "
-        "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
-        "environment is the hand"
+        "smallest |L/(1 + L)| up to the bandwidth, in (0, 1): robot over hand motion"
     )
     max_hand_effort: field.Impedance | None = at_most(
-        "largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
-        "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand"
+        "largest |Ze/(1 + L)| up to the bandwidth in N*m*s/rad: hand torque over velocity"
     )
     max_creep: field.AngularVelocity | None = at_most(
-        "largest lasting velocity in free motion by errors of the force signal, such "
-        "as 0.5 deg/s; impedance controllers only, and with sensor"
+        "largest velocity in free motion by errors of the sensor, such as 0.5 deg/s; impedance only"
     )
     max_creep_angle: field.Angle | None = at_most(
-        "largest angle that the robot creeps in free motion by errors of the force "
-        "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
+        "largest angle in free motion by errors of the sensor, such as 2 deg; with a spring Kt"
     )
     max_force_error: UnitFraction | None = at_most(
-        "largest steady force error over the commanded force, between 0 and 1, no "
-        "unit; force controllers only"
+        "largest steady force error over the commanded force, in (0, 1)"
     )
-    peak_torque: field.Torque | None = at_most(
-        "largest torque in N*m that the proved bound under all disturbances of the "
-        "spec may have; for the whole spec, not for one controller"
-    )
-    decay_rate: field.DecayRate | None = optional(
-        "smallest proved decay rate in 1/s; for the whole spec, not for one controller"
-    )
+    peak_torque: field.Torque | None = at_most("largest proved torque in N*m; of the whole spec")
+    decay_rate: field.DecayRate | None = optional("smallest proved decay rate in 1/s; of the spec")
     delay: field.Duration | None = optional(
-        "age of a force sample up to which the sampled loop must be proved, such as "
-        "4 ms; for the whole spec, and with sampling"
+        "age of force samples to be proved, such as 4 ms; of the spec, with sampling"
     )
     initial_force: field.TorqueOrLargest | None = optional(
-        "contact force in N*m from which, at rest, every motion must be proved to "
-        "decay although velocity command and motor command saturate at their limits (sampled: "
-        "the motor command alone, and the integral at its clamp); largest: as large as is found; "
-        "for the whole spec, with `limits: command`"
+        "contact force in N*m from which, at rest, every motion must be proved to decay while "
+        "commands saturate at their limits; largest: as large as is found; of the spec, with "
+        "`limits: command`"
     )
 
     checks = (

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 from nrs_design.models.drive import Takes
 from nrs_design.proof.bounds import rounded_up
@@ -117,8 +117,7 @@ def _understated(spec: Spec) -> Iterator[tuple[str, str, str]]:
             yield key, noise.text, f"{'half of ' * (parts > 1)}`{part}: {name}`, {error.text}"
 
 
-@dataclass(frozen=True, slots=True)
-class _Goals:
+class _Goals(NamedTuple):
     """Goals of all controllers or of one, and the laws that they are for."""
 
     it: GoalsSpec
@@ -128,17 +127,8 @@ class _Goals:
 
     @property
     def keys(self) -> list[str]:
-        """Those that are given."""
+        """The goals that are given, by key."""
         return [key for key, _ in self.it.given()]
-
-    def shared(self) -> Iterator[str]:
-        """Yield goals of one controller that are for all."""
-        return iter(sorted(OF_THE_CERTIFICATE.intersection(self.keys)) if self.own else ())
-
-    def misplaced(self) -> Iterator[tuple[str, str]]:
-        """Yield goals for another law, and that law."""
-        laws = ((key, ONLY_FOR[key]) for key in self.keys if key in ONLY_FOR)
-        return ((key, law) for key, law in laws if self.types and law not in self.types)
 
 
 def _goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
@@ -155,7 +145,7 @@ def _goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
 _GOALS = (
     Row[_Goals](
         "{0}",
-        _Goals.shared,
+        lambda g: (key for key in sorted(OF_THE_CERTIFICATE.intersection(g.keys)) if g.own),
         "{0} is a goal for all controllers together",
         "move it to the goals of the spec",
     ),
@@ -165,7 +155,16 @@ _GOALS = (
         "there is no controller that a goal applies to: they are for impedance and force control",
         "remove goals",
     ),
-    Row[_Goals]("{0}", _Goals.misplaced, "{0} is for {1} controllers", "remove it"),
+    Row[_Goals](
+        "{0}",
+        lambda g: (
+            (key, ONLY_FOR[key])
+            for key in g.keys
+            if g.types and key in ONLY_FOR and ONLY_FOR[key] not in g.types
+        ),
+        "{0} is for {1} controllers",
+        "remove it",
+    ),
     Row[_Goals](
         "",
         lambda g: not g.creeps and (g.it.max_creep or g.it.max_creep_angle),
@@ -194,16 +193,10 @@ def _untimed(spec: Spec) -> Iterator[tuple[Location, str]]:
 
 def _weightless(spec: Spec) -> tuple[str, object] | None:
     """Return an admittance without inertia in the hand of someone."""
-    hand = has.HAND.find(spec)
-    for name, controller in spec.controllers.items():
-        inertia = controller.gains().get("Mt")
-        if (
-            isinstance(hand, has.ContactedEnvironment)
-            and inertia is not None
-            and not inertia.min.value
-        ):
-            return name, hand
-    return None
+    hand, inertias = has.HAND.find(spec), {n: c.gains() for n, c in spec.controllers.items()}
+    light = (n for n, gains in inertias.items() if "Mt" in gains and not gains["Mt"].min.value)
+    name = next(light, None)
+    return (name, hand) if hand and name else None
 
 
 def _constant_over_samples(spec: Spec) -> tuple[str, str, str, str] | None:

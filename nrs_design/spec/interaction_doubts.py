@@ -26,11 +26,6 @@ def _doubted(spec: Spec) -> Iterator[tuple[Location, str]]:
             yield (*at, "doubts"), at[-1]
 
 
-def _untouched(spec: Spec) -> Iterator[tuple[Location, str]]:
-    touched = spec.touched
-    return ((("environments", name), name) for name in spec.environments if name not in touched)
-
-
 def _slow(spec: Spec) -> str | None:
     """Return the speed at the limit of the command, if the axis has to be faster."""
     if spec.limits.command is None or spec.actuator is None:
@@ -111,7 +106,7 @@ INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
         "record again, or add accept_doubt",
     ),
     refuse(
-        _untouched,
+        lambda s: ((("environments", n), n) for n in s.environments if n not in s.touched),
         "environment {0} is touched by no controller, so nothing is shown about it",
         "list it in the contacts of a controller, or remove it",
     ),

@@ -12,7 +12,8 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
-from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec import motion
+from nrs_design.spec.certification import SearchExtent
 from nrs_design.spec.check import Row
 from nrs_design.spec.controllers import (
     AntiWindupSpec,
@@ -28,15 +29,6 @@ from nrs_design.spec.fields import Digits, Label, Name, Positive, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.misses import MISS
 from nrs_design.spec.model import SpecModel, optional, required
-from nrs_design.spec.motion import (
-    ActuatorSpec,
-    FollowingSpec,
-    LimitsSpec,
-    MotionLoopSpec,
-    PositionInterfaceSpec,
-    TorqueInterfaceSpec,
-    VelocityInterfaceSpec,
-)
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import RangedQuantity, Times, ends_of
@@ -52,7 +44,7 @@ MAX_ENTRIES = 64
 FREE = "free"
 # Robots without a motor of the user's, by what they take.
 INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes for takes in Takes})
-DriveSpec = ActuatorSpec | FollowingSpec | TorqueInterfaceSpec
+DriveSpec = motion.ActuatorSpec | motion.FollowingSpec | motion.TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
 # What stands in the place of a controller in names of modes, and what it is.
@@ -105,13 +97,10 @@ class FreeGainsSpec(SpecModel, stronger="beside"):
 class DesignSpec(SpecModel, stronger="beside"):
     """How gains are written down."""
 
-    significant_digits: Digits = optional(
-        "designed gains are rounded to so many digits, 1 to 7, then to float32", 4
-    )
+    significant_digits: Digits = optional("digits of designed gains, 1 to 7, before float32", 4)
     free: Annotated[dict[Label, FreeGainsSpec], Field(max_length=MAX_ENTRIES)] = optional(
-        "gains beside Mt and Bt that `optimize` may change where the proof steers: motion or the "
-        "name of a controller -> gain -> {min: ..., max: ...}, as factors on the gain that the "
-        "spec gives; all other commands take that gain",
+        "gains beside Mt and Bt that `optimize` may change: motion or the name of a controller -> "
+        "gain -> {min: ..., max: ...}, as factors on the given gain",
         {},
     )
 
@@ -123,26 +112,18 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     axis: AxisType = optional(
-        "rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
-        "in m, N and kg wherever a rotary one has those",
-        AxisType.ROTARY,
+        "rotary: in rad, N*m and kg*m^2; prismatic: m, N and kg stand for those", AxisType.ROTARY
     )
-    actuator: ActuatorSpec | None = optional(
-        "the velocity-controlled motor, with motion_loop around it"
+    actuator: motion.ActuatorSpec | None = optional("velocity-controlled motor; with motion_loop")
+    motion_loop: motion.MotionLoopSpec | None = optional("the position loop around the motor")
+    velocity_interface: motion.VelocityInterfaceSpec | None = optional(
+        "a robot with a motion loop of its own that takes velocities; without actuator"
     )
-    motion_loop: MotionLoopSpec | None = optional("the position loop around the motor")
-    velocity_interface: VelocityInterfaceSpec | None = optional(
-        "a robot that closes its own motion loop and takes velocities, in the place of actuator "
-        "and motion_loop"
+    position_interface: motion.PositionInterfaceSpec | None = optional("the same for positions")
+    torque_interface: motion.TorqueInterfaceSpec | None = optional(
+        "a robot that takes torques, without actuator; for controllers of type torque-impedance"
     )
-    position_interface: PositionInterfaceSpec | None = optional(
-        "the same of a robot that takes positions"
-    )
-    torque_interface: TorqueInterfaceSpec | None = optional(
-        "a robot that takes torques, in the place of actuator and motion_loop; its controllers are "
-        "of type torque-impedance"
-    )
-    limits: LimitsSpec = required("what the interaction must respect")
+    limits: motion.LimitsSpec = required("what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = optional(
         "what the robot touches: name -> environment", {}
     )
@@ -150,58 +131,37 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = required("what the robot switches between: name -> controller")
     idle_states: IdleStatesSpec | None = optional(
-        "what the states of impedance controllers do while a position or force "
-        "controller is active, and the integral of a pi-force controller while another one is; "
-        "required where there are both"
+        "states of impedance controllers under position or force controllers, and integrals of "
+        "pi-force controllers under others; required where both exist"
     )
-    anti_windup: AntiWindupSpec | None = optional(
-        "where the processor cuts off the integral of pi-force controllers; with sampling"
-    )
-    goals: GoalsSpec | None = optional(
-        "what every impedance and force controller must achieve; the gate enforces it"
-    )
+    anti_windup: AntiWindupSpec | None = optional("clamp of the integral of pi-force controllers")
+    goals: GoalsSpec | None = optional("goals of each impedance and force controller, and the gate")
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
-    sampling: SamplingSpec | None = optional(
-        "the processor that runs the law; without it the proof is for continuous time"
-    )
-    disturbances: DisturbancesSpec | None = optional(
-        "what acts on the loop from outside; its effect on force and velocity is bounded"
-    )
-    sensor: SensorSpec | None = optional(
-        "the force signal: its filter is a part of the loop, its errors bound the "
-        "creep; without it the force is taken for exact"
-    )
+    sampling: SamplingSpec | None = optional("the processor of the law; default: continuous time")
+    disturbances: DisturbancesSpec | None = optional("what acts on the loop from outside")
+    sensor: SensorSpec | None = optional("the force signal, its filter and errors; default: exact")
     monitoring: MonitoringSpec | None = optional(
-        "what readings of a running loop are worth, for `export --format monitor` and `audit`; no "
-        "proof depends on it"
+        "errors of readings, for `export --format monitor` and `audit`; no proof depends on it"
     )
     contact: Literal["losable", "kept"] | None = optional(
-        "whether a proof must hold while contact is lost and made again (losable), or "
-        "takes for granted that it is kept; default: losable where that can be proved",
+        "losable: proved for contact that is lost and made again; kept: taken for granted; "
+        "default: losable where that can be proved",
         stronger=("kept", None, "losable"),
     )
     coordinates: Literal["deflection"] = optional(
-        "state of the contact: the deflection, which stays continuous when the stiffness switches",
-        "deflection",
+        "state of the contact: the deflection", "deflection"
     )
     mode_logic: ThresholdLogicSpec | None = optional(
-        "what decides which controller is active; `switching: mode-logic` lets the "
-        "proof be about the switching signals that it can give",
-        unsaid="most",
+        "what decides which controller is active, for `switching: mode-logic`", unsaid="most"
     )
     switching: LogicalRule = required(
-        "when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
-        "with dwell_time and transitions between controllers, or between controllers in one "
-        "contact each, such as tissue/soft"
+        "arbitrary, mode-logic, or rules with dwell_time and transitions between controllers, or "
+        "between controllers in one contact each, such as tissue/soft"
     )
     scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = optional(
         "runs for `nrs-design simulate`: name -> scenario; no proof depends on them", {}
     )
-    # The default is made without validation, for which a validator of its own would be built.
-    certification: CertificationSpec = Field(
-        default_factory=CertificationSpec.model_construct,
-        description="how far the search for a proof goes",
-    )
+    certification: SearchExtent
 
     @field_validator("switching", mode="before")
     @classmethod
@@ -225,10 +185,8 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         parts: dict[tuple[str, ...], IdentifiedSpec] = {
             (key,): drive for key, drive in self.drives.items()
         }
-        parts.update((("environments", name), item) for name, item in self.environments.items())
-        if self.sampling is not None:
-            parts["sampling",] = self.sampling
-        return parts
+        parts |= {("environments", name): item for name, item in self.environments.items()}
+        return parts if self.sampling is None else parts | {("sampling",): self.sampling}
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -257,7 +215,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         return {key: drive for key, drive in found.items() if drive is not None}
 
     @property
-    def followed(self) -> FollowingSpec | None:
+    def followed(self) -> motion.FollowingSpec | None:
         """The robot that closes its own motion loop, if it does."""
         return self.velocity_interface or self.position_interface
 
@@ -328,10 +286,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
         each = [ends_of(times) for times in self.late_times.values()]
-        return (
-            sum((shortest for shortest, _ in each), Fraction(0)),
-            sum((longest for _, longest in each), Fraction(0)),
-        )
+        return sum((t[0] for t in each), Fraction(0)), sum((t[1] for t in each), Fraction(0))
 
     @property
     def has_ranges(self) -> bool:

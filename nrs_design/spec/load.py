@@ -205,14 +205,14 @@ def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
     if not isinstance(root, Mapping):
         raise refuse("a spec is a mapping of keys", "start with `kind: ...`", root)
     kind = root.entries.get("kind")
+    if kind is None and {"schema", "verdict"} <= root.entries.keys():
+        raise SpecError(
+            "this is a certificate, not a spec",
+            path=path,
+            remedy="name the spec that it is for; nrs-design verify CERT reads certificates, "
+            "and what an assumption bounds and how to test it is in the report of a spec alone",
+        )
     if kind is None:
-        if {"schema", "verdict"} <= root.entries.keys():
-            raise SpecError(
-                "this is a certificate, not a spec",
-                path=path,
-                remedy="name the spec that it is for; nrs-design verify CERT reads certificates, "
-                "and what an assumption bounds and how to test it is in the report of a spec alone",
-            )
         raise refuse("`kind` is missing", f"add `kind: ` with one of {', '.join(SPEC_KINDS)}", root)
     if not isinstance(kind, Scalar):
         raise refuse("kind: expected a single text", "write one value", kind)

@@ -63,9 +63,7 @@ class MissRuleSpec(SpecModel, stronger="larger"):
 
     at_most: _Count | None = optional("how many of `of` steps in a row may be missed")
     of: _Count | None = optional("length of the window, in steps", stronger="smaller")
-    consecutive: _Count | None = optional(
-        "in the place of both: how many steps in a row may be missed"
-    )
+    consecutive: _Count | None = optional("instead of both: how many steps in a row may be missed")
 
     @property
     def window(self) -> tuple[int, int]:
@@ -110,13 +108,10 @@ class DeadlinesSpec(MissRuleSpec):
     """
 
     command: Literal["hold", "zero"] = required(
-        "what the drive follows in a period whose deadline is missed: `hold` the "
-        "command of the period before, or `zero`, a command of zero"
+        "command in a period with a missed deadline: `hold` the one before, or `zero`"
     )
     job: Literal["kill", "skip"] = optional(
-        "what becomes of a job that misses its deadline: `kill` drops it, and the law "
-        "keeps its states; `skip`, which lets it go on, is refused with what to write instead",
-        "kill",
+        "a job that misses its deadline: `kill` drops it; `skip` is refused", "kill"
     )
 
     def __str__(self) -> str:

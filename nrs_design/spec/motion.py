@@ -24,6 +24,13 @@ CommandUnit = Literal["rpm", "V", "A", "counts"]
 Coefficients = Annotated[tuple[Exact, ...], Field(min_length=1, max_length=MAX_COEFFICIENTS)]
 
 
+_DEAD_TIME = (
+    "time in s for which a command does nothing, one number or [shortest, longest]; the proof adds "
+    "it to the latency of `sampling`"
+)
+_COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
+
+
 class ActuatorIntervals(SpecModel, stronger="neither"):
     """Confidence intervals of an identified actuator, for the record.
 
@@ -31,11 +38,9 @@ class ActuatorIntervals(SpecModel, stronger="neither"):
     """
 
     gain: tuple[field.ActuatorGain, field.ActuatorGain] = required(
-        "[lowest, highest] gain in rad/s per command unit, 95 % interval"
+        "[lowest, highest], as rad/s/rpm"
     )
-    time_constant: tuple[field.Duration, field.Duration] = required(
-        "[lowest, highest] time constant in s, 95 % interval"
-    )
+    time_constant: tuple[field.Duration, field.Duration] = required("[lowest, highest] in s")
 
 
 def commands_in(
@@ -63,30 +68,19 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
     command: CommandUnit = optional(
-        "unit of the commands delta that the motor takes: rpm, V, A or counts; gain, "
-        "derivative_gain and friction are written in it",
-        "rpm",
+        "unit of the commands delta, also of gain, derivative_gain and friction", "rpm"
     )
     gain: field.RangedActuatorGain = required(
-        "Km, motor speed per command unit, such as rad/s/rpm or rad/s/V, as in "
-        "theta_m/delta = Km/(s (tau s + 1))"
+        "Km in rad/s/rpm or rad/s/V: theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: field.RangedDuration = required("tau, mechanical time constant in s")
-    dead_time: field.TimeRange | None = optional(
-        "time in s for which a command does nothing before the motor follows it, one number or "
-        "[shortest, longest]; the proof adds it to the latency of `sampling`"
-    )
+    dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     load_inertia: field.RotorInertia | None = optional(
-        "inertia at the joint in kg*m^2 against which the torque of an environment "
-        "works; without it that torque does not slow the motor"
+        "inertia at the joint in kg*m^2 that environments slow; default: none does"
     )
-    range_covers: Coverage | None = optional(
-        "what the identified ranges hold: confidence (the recorded motor), tolerance "
-        "(95 % of all records of such motors) or prediction (the next record), each with 95 %"
-    )
+    range_covers: Coverage | None = optional(_COVERS)
     intervals: ActuatorIntervals | None = optional(
-        "95 % intervals of gain and time constant, for the record: the proof is for "
-        "the nominal values"
+        "95 % intervals of gain and time constant, for the record; no proof depends on them"
     )
 
     def _about_commands(self) -> Iterator[tuple[Location, Quantity]]:
@@ -115,22 +109,11 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
     )
 
 
-_DEAD_TIME = (
-    "time in s for which a command does nothing before the robot follows it, one number or "
-    "[shortest, longest]; the proof adds it to the latency of `sampling`"
-)
-_COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
-
-
 class TransferFunctionSpec(SpecModel, stronger="neither"):
     """Strictly proper transfer function, coefficients with the highest power first."""
 
-    numerator: Coefficients = required(
-        "numerator coefficients, exact numbers, highest power of s first"
-    )
-    denominator: Coefficients = required(
-        "denominator coefficients, exact numbers, highest power of s first"
-    )
+    numerator: Coefficients = required("coefficients, exact numbers, highest power of s first")
+    denominator: Coefficients = required("coefficients, exact numbers, highest power of s first")
 
     checks = (
         Row(
@@ -151,12 +134,8 @@ class TransferFunctionSpec(SpecModel, stronger="neither"):
 class FollowingSpec(IdentifiedRangesSpec, stronger="wider"):
     """A robot that closes its own motion loop, and follows what is streamed."""
 
-    time_constant: field.RangedDuration | None = optional(
-        "tau in s of 1/(tau s + 1), by which the robot follows its command"
-    )
-    transfer_function: TransferFunctionSpec | None = optional(
-        "by which the robot follows its command, in the place of time_constant; no unit"
-    )
+    time_constant: field.RangedDuration | None = optional("tau in s of the robot, 1/(tau s + 1)")
+    transfer_function: TransferFunctionSpec | None = optional("instead of time_constant, no unit")
     dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     range_covers: Coverage | None = optional(_COVERS)
 
@@ -206,20 +185,13 @@ class TorqueInterfaceSpec(IdentifiedRangesSpec, stronger="wider"):
 class MotionLoopSpec(SpecModel, stronger="neither"):
     """Motion loop around the actuator, closed by a PD controller (thesis 4.3)."""
 
-    damping_ratio: UnitFraction = required(
-        "wanted damping ratio of the closed loop, between 0 and 1, no unit"
-    )
+    damping_ratio: UnitFraction = required("wanted damping ratio, between 0 and 1, no unit")
     settling_time: field.Duration = required("wanted settling time 4/(zeta wn) in s")
     derivative_gain: field.DerivativeGain | None = optional(
-        "derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
-        "default: from the root locus"
+        "derivative gain, such as rpm*s/rad, in the unit of commands; default: from the root locus"
     )
-    zero: field.Zero | None = optional(
-        "zero Kp/Kd of the PD controller really used, in 1/s; default: from the root locus"
-    )
-    transfer_function: TransferFunctionSpec | None = optional(
-        "closed motion loop G to be used instead of the one that the PD gives, no unit"
-    )
+    zero: field.Zero | None = optional("zero Kp/Kd of the PD in 1/s; default: from the root locus")
+    transfer_function: TransferFunctionSpec | None = optional("closed loop G instead, no unit")
 
 
 # How the name of an output begins that is held against `limits: {command: ...}`.
@@ -231,12 +203,9 @@ class LimitsSpec(SpecModel, stronger="unknown"):
 
     velocity: field.AngularVelocity = required("largest commanded angular velocity in rad/s")
     torque: field.Torque = required("largest interaction torque in N*m", "smaller")
-    bandwidth: field.Bandwidth = required(
-        "highest frequency of the operator's motion, Hz", "larger"
-    )
+    bandwidth: field.Bandwidth = required("highest frequency of the operator, Hz", "larger")
     command: field.LargestCommand | None = at_most(
-        "largest command that the motor's driver takes, such as rpm, for the error "
-        "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
-        "five times as far as the joint, and the gains are for the joint, a fifth of the "
-        "driver's own; exported code saturates there, and bounds on the command are held to it"
+        "largest command of the motor's driver, such as rpm, for the error that derivative_gain "
+        "is for: a fifth of the driver's own where its encoder turns five times as far as the "
+        "joint; exported code saturates there, and bounds are held to it"
     )

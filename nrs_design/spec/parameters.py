@@ -165,14 +165,8 @@ class ParameterSpec(SpecModel):
     """An uncertain number that the matrices depend on."""
 
     nominal: _Value = required("value that is meant, an exact number, no unit")
-    range: _Range = range_around(
-        "[lowest, highest] value that the proof covers; default: the nominal one"
-    )
-    varies: Switch = optional(
-        "true: may change arbitrarily fast within its range; false: unknown, but it "
-        "does not change",
-        True,
-    )
+    range: _Range = range_around("[lowest, highest] value that is proved; default: the nominal one")
+    varies: Switch = optional("true: changes arbitrarily fast; false: an unknown constant", True)
 
     @property
     def fixed(self) -> bool:

@@ -13,7 +13,7 @@ from pydantic_core import ErrorDetails
 from nrs_design.errors import Fault
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Node, Position, steps_to
-from nrs_design.spec.faults import FAULT, Location, did_you_mean
+from nrs_design.spec.faults import FAULT, Location, did_you_mean, nearest
 from nrs_design.spec.model import ParsedBy
 
 # Below a choice between models, validation inserts the tag of the chosen one.
@@ -93,12 +93,13 @@ def _of_keys(word: str, fields: Mapping[str, FieldInfo | None]) -> str:
     """Suggest the key that is meant, by another word for it or one level deeper; list the keys."""
     keys = sorted(fields, key=_IDENTIFIED.__contains__)
     called = [key for key in keys if word.lower() in _OTHER_KEYS.get(key, ())]
-    meant = did_you_mean(word, keys, "keys here are", called)
+    listing = did_you_mean(word, keys, "keys here are", called)
     parts = {key: (field.annotation, *field.metadata) for key, field in fields.items() if field}
     inside = [key for key, part in parts.items() if word in _keys_below(*part)]
-    if not inside or meant.startswith("did you mean"):
-        return meant
-    return f"it belongs inside {' or '.join(inside)}, as in `{inside[0]}: {{{word}: ...}}`; {meant}"
+    if not inside or nearest(word, keys, called):
+        return listing
+    places = f"{' or '.join(inside)}, as in `{inside[0]}: {{{word}: ...}}`"
+    return f"it belongs inside {places}; {listing}"
 
 
 def _keys_below(*parts: Any) -> Iterator[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
@@ -22,23 +21,17 @@ MAX_SOURCES = 1000
 MAX_DOUBTS = 100
 
 Coverage = Literal["confidence", "tolerance", "prediction"]
-COVERS: Mapping[Coverage, str] = MappingProxyType(
-    {
-        "confidence": "the mean of the specimens with 95 % confidence, and each measured record",
-        "tolerance": "95 % of all such specimens with 95 % confidence",
-        "prediction": "the next record with 95 % probability",
-    }
-)
-
+COVERS: Mapping[Coverage, str] = {
+    "confidence": "the mean of the specimens with 95 % confidence, and each measured record",
+    "tolerance": "95 % of all such specimens with 95 % confidence",
+    "prediction": "the next record with 95 % probability",
+}
 # Of a motor, all whose records are fitted at once.
-MOTOR_COVERS: Mapping[Coverage, str] = MappingProxyType(
-    {
-        "confidence": "gain and time constant of the recorded motor, both at once with 95 % "
-        "confidence",
-        "tolerance": "95 % of all records of such motors with 95 % confidence",
-        "prediction": "the next record with 95 % probability",
-    }
-)
+MOTOR_COVERS: Mapping[Coverage, str] = {
+    **COVERS,
+    "confidence": "gain and time constant of the recorded motor, both at once with 95 % confidence",
+    "tolerance": "95 % of all records of such motors with 95 % confidence",
+}
 
 
 class ProvenanceSpec(SpecModel, stronger="beside"):
@@ -46,9 +39,7 @@ class ProvenanceSpec(SpecModel, stronger="beside"):
 
     file: Title = required("name of the data file, one line, no unit")
     sha256: Hash = required("SHA-256 of its bytes, 64 hexadecimal digits")
-    data: Literal["measured", "synthetic"] = required(
-        "measured, or synthetic: made by a simulation"
-    )
+    data: Literal["measured", "synthetic"] = required("measured, or synthetic (by a simulation)")
 
 
 Provenance = Annotated[tuple[ProvenanceSpec, ...], Field(max_length=MAX_SOURCES)]
@@ -58,19 +49,16 @@ class IdentifiedSpec(SpecModel):
     """What `nrs-design identify --write` notes down beside the values."""
 
     provenance: Provenance = optional(
-        "data files that the values were identified from, by nrs-design identify",
-        (),
-        stronger="neither",
+        "data files that the values were identified from", (), stronger="neither"
     )
     doubts: Annotated[tuple[Title, ...], Field(max_length=MAX_DOUBTS)] = optional(
-        "why the records may not determine the values, by nrs-design identify; the "
-        "gate fails on them (NRS107)",
+        "why the records may not determine the values; the gate fails on them (NRS107)",
         (),
         stronger="whole",
     )
     accept_doubt: Title | None = optional(
-        "why the values are used despite the doubts, or without any despite their "
-        "unusual sizes: one line, which is printed with every proof; the gate then passes",
+        "why the values are used despite doubts or unusual sizes: one line, printed with every "
+        "proof",
         stronger="neither",
         unsaid="most",
     )
@@ -96,8 +84,7 @@ class IdentifiedRangesSpec(IdentifiedSpec):
 
     range_covers: Coverage | None = None
     range_id: Hash | None = optional(
-        "SHA-256 over identified values and doubts, by nrs-design identify: what was "
-        "changed by hand since is refused",
+        "SHA-256 over identified values and doubts; values changed since are refused",
         stronger="neither",
     )
 

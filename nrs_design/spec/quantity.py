@@ -126,10 +126,10 @@ class QuantityKind:
                 return advice.format(value=value)
         if self.is_about_commands:
             return f"write {written_as(self.units).format(value=value)}"
-        return f"{self.reason}write it in {' or '.join(self.units)}{self.such}"
+        return f"{self.reason}write it in {' or '.join(self.units)}{self.example_clause}"
 
     @property
-    def such(self) -> str:
+    def example_clause(self) -> str:
         """An example behind advice; none where its unit depends on the motor."""
         return "" if self.is_about_commands else f", such as {self.example!r}"
 
@@ -162,7 +162,7 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
     except SpecError as error:
         if not has_unknown(unit):
             raise
-        units = f"{kind.name} is written in {' or '.join(kind.units)}{kind.such}"
+        units = f"{kind.name} is written in {' or '.join(kind.units)}{kind.example_clause}"
         guess = guess_unit(unit)
         if guess is not None and kind.accepts(parse_unit(guess).dimension):
             units = f"did you mean {guess}? {units}"

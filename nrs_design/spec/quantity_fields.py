@@ -49,7 +49,7 @@ def read_quantity(
         quantity = parse_quantity(as_text(value, *at), kind)
         if not signed and (quantity.value < 0 or (positive and quantity.value == 0)):
             bound = "positive" if positive else "zero or positive"
-            above = f"write a number above zero{kind.such}"
+            above = f"write a number above zero{kind.example_clause}"
             raise SpecError(
                 f"{quoted(quantity.text)} must be {bound}",
                 remedy="check the sign" if quantity.value else above,
@@ -134,14 +134,10 @@ class RangedQuantity(SpecModel):
 
     nominal: AnyQuantity = required("value that the design uses")
     range: tuple[AnyQuantity, AnyQuantity] = range_around(
-        "[lowest, highest] value that the proof covers; default: the nominal one"
+        "[lowest, highest] value that is proved; default: the nominal one"
     )
 
-    varies: Switch = optional(
-        "true: may change arbitrarily fast within its range; false: unknown, but it "
-        "does not change",
-        True,
-    )
+    varies: Switch = optional("true: changes arbitrarily fast; false: an unknown constant", True)
 
     checks = (
         *RANGE_CHECKS,
@@ -180,19 +176,13 @@ def bounds_of(kind: QuantityKind, model: type[SpecModel], *, positive: bool = Tr
     return ExpandedBy(read, {"anyOf": [single, keys_schema(described, *keys)]})
 
 
-def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> ExpandedBy:
-    """Read a quantity with a range; in some places it may be said to be constant."""
-    reader = _reader(kind, **signs)
+def _ranged(kind: QuantityKind, *, positive: bool = True) -> ExpandedBy:
+    """Read a quantity with a range, in which it may be said to be constant."""
+    reader = _reader(kind, positive=positive)
 
     def read(value: object) -> object:
         if isinstance(value, str):
             return {"nominal": reader(value)}
-        if isinstance(value, dict) and "varies" in value and not constant:
-            raise fault(
-                "no proof is about whether this value changes while the robot runs",
-                "remove varies: it is for numbers of the motor and of environments",
-                "varies",
-            )
         return _read_keys(value, {"nominal": reader, "range": partial(_read_range, reader)})
 
     single = quantity_schema(kind)
@@ -200,7 +190,6 @@ def _ranged(kind: QuantityKind, *, constant: bool = False, **signs: bool) -> Exp
     keys = {
         key: {**each[key], "description": field.description}
         for key, field in RangedQuantity.model_fields.items()
-        if constant or key != "varies"
     }
     return ExpandedBy(read, {"anyOf": [single, keys_schema(keys, "nominal")]})
 
@@ -283,9 +272,9 @@ TimeRange = Annotated[
     ParsedBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES, _RANGED_TIMES]}),
 ]
 ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
-RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, constant=True)]
+RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN)]
 Duration = Annotated[Quantity, _one(kinds.DURATION)]
-RangedDuration = Annotated[RangedQuantity, _ranged(kinds.DURATION, constant=True)]
+RangedDuration = Annotated[RangedQuantity, _ranged(kinds.DURATION)]
 DerivativeGain = Annotated[Quantity, _one(kinds.DERIVATIVE_GAIN)]
 Decay = Annotated[Quantity, _one(kinds.DECAY, positive=False)]
 DecayRate = Annotated[Quantity, _one(kinds.DECAY)]
@@ -300,14 +289,14 @@ Bandwidth = Annotated[Quantity, _one(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _one(kinds.LEVER_ARM)]
 RotationalStiffness = Annotated[Quantity, _one(kinds.SPRING)]
 Impedance = Annotated[Quantity, _one(kinds.IMPEDANCE)]
-RangedImpedance = Annotated[RangedQuantity, _ranged(kinds.IMPEDANCE, constant=True)]
+RangedImpedance = Annotated[RangedQuantity, _ranged(kinds.IMPEDANCE)]
 NonnegativeImpedance = Annotated[Quantity, _one(kinds.IMPEDANCE, positive=False)]
 IntegralForceGain = Annotated[Quantity, _one(kinds.INTEGRAL_FORCE_GAIN)]
 ForceGain = Annotated[Quantity, _one(kinds.FORCE_GAIN)]
-Stiffness = Annotated[RangedQuantity, _ranged(kinds.STIFFNESS, constant=True)]
-Damping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, positive=False, constant=True)]
-PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, constant=True)]
-HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False, constant=True)]
+Stiffness = Annotated[RangedQuantity, _ranged(kinds.STIFFNESS)]
+Damping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, positive=False)]
+PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING)]
+HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False)]
 Deflection = Annotated[Quantity, _one(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _one(kinds.MASS, positive=False)]
 Length = Annotated[Quantity, _one(kinds.LENGTH)]
@@ -316,7 +305,7 @@ Angle = Annotated[Quantity, _one(kinds.ANGLE)]
 Phase = Annotated[Quantity, _one(kinds.PHASE)]
 SignedAngle = Annotated[Quantity, _one(kinds.ANGLE, signed=True)]
 MomentOfInertia = Annotated[Quantity, _one(kinds.INERTIA, positive=False)]
-RangedInertia = Annotated[RangedQuantity, _ranged(kinds.INERTIA, constant=True)]
+RangedInertia = Annotated[RangedQuantity, _ranged(kinds.INERTIA)]
 RotorInertia = Annotated[Quantity, _one(kinds.INERTIA)]
 ProductOfInertia = Annotated[Quantity, _one(kinds.INERTIA, signed=True)]
 LinearVelocity = Annotated[Quantity, _one(kinds.LINEAR_VELOCITY)]

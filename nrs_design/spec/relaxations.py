@@ -7,18 +7,20 @@ value, a shorter delay, a dwell time, a key left out. Whether the result is a va
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import ceil, floor, log2
 
-from nrs_design.proof.text import exact_text
+from nrs_design.proof.text import counted, exact_text
 from nrs_design.spec.document import Data, Node, to_data
 from nrs_design.spec.edits import Edit, Keys, in_one_line, node_at
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec
+from nrs_design.spec.parameters import ParameterSpec
+from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import LONGEST_DWELL
 from nrs_design.spec.units import parse_unit
@@ -72,27 +74,31 @@ class SpecRelaxation:
 def iterate_relaxations(loaded: LoadedSpec, slowest: float | None) -> Iterator[SpecRelaxation]:
     """Yield how single lines of a spec could ask for less, the mildest first.
 
-    The gains are those that are designed, as decimals in SI. `slowest` is the decay rate of the
-    slowest mode in 1/s: it says which dwell times are tried.
+    `slowest` is the decay rate of the slowest mode in 1/s: it says which dwell times are tried.
     """
     spec, root = loaded.spec, loaded.root
     if isinstance(spec, SwitchedSystemSpec):
-        yield from _of_matrices(spec, root, slowest)
+        for name in spec.parameters:
+            yield from _range(root, ("parameters", name))
+        yield from _constants({("parameters", name): p for name, p in spec.parameters.items()})
+        yield from _dwell(spec.switching.is_arbitrary, root, slowest, spec.time == "discrete")
+        yield from _single(("modes",), len(spec.modes))
     elif isinstance(spec, InteractionDesignSpec):
         yield from _of_interaction(spec, root, slowest)
 
 
-def _of_matrices(
-    spec: SwitchedSystemSpec, root: Node, slowest: float | None
+def _constants(
+    ranges: Mapping[tuple[str, ...], ParameterSpec | RangedQuantity],
 ) -> Iterator[SpecRelaxation]:
-    for name in spec.parameters:
-        yield from _range(root, ("parameters", name))
-    for name, parameter in spec.parameters.items():
-        if parameter.varies and not parameter.fixed:
-            yield _with(("parameters", name, "varies"), "false", "true")
-    yield from _dwell(spec.switching.is_arbitrary, root, slowest, spec.time == "discrete")
-    for index in range(len(spec.modes) if len(spec.modes) > 1 else 0):
-        yield _without(("modes", index))
+    """Yield ranges whose number could be a constant."""
+    for at, written in ranges.items():
+        if written.varies and not written.fixed:
+            yield _with((*at, "varies"), "false", "true")
+
+
+def _single(at: Keys, count: int) -> Iterator[SpecRelaxation]:
+    """Yield the items of a list, where there are several."""
+    return (_without((*at, index)) for index in range(count if count > 1 else 0))
 
 
 def _of_interaction(
@@ -103,9 +109,7 @@ def _of_interaction(
             yield from _range(root, ("environments", name, key))
     for at in spec.motor_ranges:
         yield from _range(root, at)
-    for place, quantity in spec.ranges.items():
-        if quantity.varies and not quantity.fixed:
-            yield _with((*place, "varies"), "false", "true")
+    yield from _constants(spec.ranges)
     if spec.sampling is not None:
         yield from _delay(*spec.sampling.delay)
         yield from _times(root, ("sampling", "latency"))
@@ -151,8 +155,7 @@ def _scaled(given: Data, factor: Fraction) -> Data:
 def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
     """Yield what may be left out whole."""
     for name, controller in spec.controllers.items():
-        for index in range(len(controller.contacts) if len(controller.contacts) > 1 else 0):
-            yield _without(("controllers", name, "contacts", index))
+        yield from _single(("controllers", name, "contacts"), len(controller.contacts))
     if len(spec.controllers) > 1:
         for name in spec.controllers:
             yield _without(("controllers", name))
@@ -188,29 +191,26 @@ def _range(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
     middle = str(part.get("nominal", ""))
     if not middle or _number(low) >= _number(high, low):
         return
-    ends = (low, high, middle)
-    up = partial(_ends, ends, (False, True))
-    down = partial(_ends, ends, (True, False))
-    both = partial(_ends, ends, (True, True))
     others: tuple[RelaxationSteps, ...] = ()
     if _number(low, middle) < _number(middle) < _number(high, middle):
         others = (
-            RelaxationSteps(UP, up, lambda k: up(k)[1], high, PARTS),
-            RelaxationSteps(DOWN, down, lambda k: down(k)[0], low, PARTS),
+            _widening(UP, (low, middle), (low, high)),
+            _widening(DOWN, (middle, high), (low, high)),
         )
-    least = RelaxationSteps(
-        WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS
-    )
-    yield SpecRelaxation((*at, "range"), least, others)
+    yield SpecRelaxation((*at, "range"), _widening(WITHIN, (middle, middle), (low, high)), others)
 
 
-def _ends(ends: tuple[str, str, str], moved: tuple[bool, bool], step: int) -> tuple[str, str]:
-    """Return the ends of a range, of which some are a part of the way from its center."""
-    low, high, middle = ends
-    return (
-        _between(middle, low, step) if moved[0] else low,
-        _between(middle, high, step) if moved[1] else high,
-    )
+def _widening(word: str, least: tuple[str, str], ends: tuple[str, str]) -> RelaxationSteps:
+    """Return the steps from a narrow range to a wide one, named by the end that moves."""
+
+    def value(step: int) -> tuple[str, str]:
+        low, high = (_between(*way, step) for way in zip(least, ends, strict=True))
+        return low, high
+
+    def label(said: tuple[str, str]) -> str:
+        return in_one_line(said) if word == WITHIN else said[word == UP]
+
+    return RelaxationSteps(word, value, lambda k: label(value(k)), label(ends), PARTS)
 
 
 def _between(middle: str, end: str, step: int) -> str:
@@ -255,34 +255,27 @@ def _times(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
         return
     low, high = map(str, part)
     if _number(low, high) < _number(high):
-        up = partial(_ends, (low, high, low), (False, True))
-        yield SpecRelaxation(at, RelaxationSteps(UP, up, lambda k: up(k)[1], high, PARTS))
+        yield SpecRelaxation(at, _widening(UP, (low, low), (low, high)))
 
 
 def _delay(least: int, most: int) -> Iterator[SpecRelaxation]:
     at: Keys = ("sampling", "delay")
+    asked = counted(most, "sample")
     if least < most:
-
-        def says(step: int) -> Data:
-            return (str(least), str(least + step))
-
         # Firmware cannot make a sample newer, but hold fresh ones back until they are as old.
-        held = f"{_samples(most)} always, fresh ones held back"
-        yield SpecRelaxation(
-            at,
-            RelaxationSteps(WITH, lambda k: str(most), lambda k: held, _samples(most)),
-        )
+        held = f"{asked} always, fresh ones held back"
+        yield SpecRelaxation(at, RelaxationSteps(WITH, lambda _: str(most), lambda _: held, asked))
         form = RelaxationSteps(
-            UP, says, lambda k: _samples(least + k), _samples(most), most - least
+            UP,
+            lambda k: (str(least), str(least + k)),
+            lambda k: counted(least + k, "sample"),
+            asked,
+            most - least,
         )
         yield SpecRelaxation(at, form)
     elif most:
-        form = RelaxationSteps(WITH, str, _samples, _samples(most), most)
+        form = RelaxationSteps(WITH, str, lambda k: counted(k, "sample"), asked, most)
         yield SpecRelaxation(at, form, changes_model=True)
-
-
-def _samples(count: int) -> str:
-    return f"{count} sample{'' if count == 1 else 's'}"
 
 
 def _dwell(
@@ -293,7 +286,8 @@ def _dwell(
     given = _said(root, (*at, "dwell_time"))
     if arbitrary and _said(root, at) == "arbitrary":
         if discrete:
-            yield SpecRelaxation(at, _dwell_form(MOST_STEPS - 2, _steps_at))
+            form = _dwell_form(MOST_STEPS - 2, lambda step: f"{MOST_STEPS - step} steps")
+            yield SpecRelaxation(at, form)
         elif slowest is not None and slowest > 0:
             longest = min(Fraction(2) ** ceil(log2(TIMES / slowest)), Fraction(LONGEST_DWELL))
             yield SpecRelaxation(at, _dwell_form(DWELLS, partial(_seconds_at, longest)))
@@ -312,10 +306,6 @@ def _dwell_form(size: int, text: Callable[[int], str]) -> RelaxationSteps:
         return "arbitrary" if step > size else {"dwell_time": text(step)}
 
     return RelaxationSteps(WITH, says, lambda k: f"dwell_time: {text(k)}", "arbitrary", size + 1)
-
-
-def _steps_at(step: int) -> str:
-    return f"{MOST_STEPS - step} steps"
 
 
 def _seconds_at(longest: Fraction, step: int) -> str:

@@ -59,11 +59,10 @@ class BodySpec(SpecModel, stronger="neither"):
 
     mass: field.Mass = required("mass in kg, >= 0")
     center_of_mass: tuple[field.Coordinate, field.Coordinate, field.Coordinate] = required(
-        "center of mass [x, y, z] in m, in the frame of the body"
+        "center of mass [x, y, z] in m"
     )
     inertia: Literal["slender-rod", "tensor"] = required(
-        "slender-rod: m l^2/12 about both axes across the body's length, 0 along it; "
-        "tensor: as given under `tensor`"
+        "slender-rod: m l^2/12 about both axes across the length; tensor: as `tensor` says"
     )
     tensor: TensorSpec | None = optional("inertia about the center of mass, with `inertia: tensor`")
 
@@ -80,30 +79,17 @@ class BodySpec(SpecModel, stronger="neither"):
 class LegSpec(SpecModel, stronger="neither"):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
-    azimuth: field.SignedAngle = required(
-        "direction of the base axis through the pivot, in the base's x-y plane, from x towards y"
-    )
-    elbow_sign: ElbowSign = required(
-        "sign of the elbow's angle in `crank angle = direction of the coupler joint + "
-        "sign * acos(...)`: -1 bends the elbow outwards (thesis 3.10), 1 inwards"
-    )
+    azimuth: field.SignedAngle = required("direction of the base axis, from x to y")
+    elbow_sign: ElbowSign = required("-1: the elbow bends outwards (thesis 3.10); 1: inwards")
     l0: field.Length = required("pivot to base joint along the base axis, in m")
     l1: field.Length = required("length of the crank, in m")
     l2: field.Length = required("length of the coupler, in m")
     l3: field.Length = required("distance of the coupler's end from the endoscope axis, in m")
-    crank: BodySpec = required(
-        "first link; x along it from the base joint, z normal to the leg's plane"
-    )
-    coupler: BodySpec = required(
-        "second link; x along it from the elbow, z normal to the leg's plane"
-    )
-    arm: BodySpec = required(
-        "third link; x along it from the coupler's end to the endoscope axis, z "
-        "normal to the leg's plane"
-    )
+    crank: BodySpec = required("first link; x from the base joint, z normal to the leg's plane")
+    coupler: BodySpec = required("second link; x from the elbow, z normal to the leg's plane")
+    arm: BodySpec = required("third link; x from the coupler to the endoscope, z as before")
     axis_inertia: field.MomentOfInertia = required(
-        "inertia about the base axis of what turns with the leg's plane beside its "
-        "links, such as a rotor, in kg*m^2"
+        "inertia about the base axis beside the links, such as a rotor's, in kg*m^2"
     )
 
 
@@ -154,18 +140,12 @@ class TaskLimitsSpec(SpecModel, stronger="unknown"):
 class DriveSpec(SpecModel, stronger="neither"):
     """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
 
-    gain: field.ActuatorGain = required(
-        "Km, speed of the gearhead's output per command, in rad/s/rpm (thesis 4.9)"
-    )
+    gain: field.ActuatorGain = required("Km of the gearhead's output in rad/s/rpm (thesis 4.9)")
     time_constant: field.Duration = required("mechanical time constant in s (thesis 4.9)")
-    rotor_inertia: field.MomentOfInertia = required(
-        "motor and gearhead, at the motor shaft, in kg*m^2"
-    )
+    rotor_inertia: field.MomentOfInertia = required("motor and gearhead, at the shaft, in kg*m^2")
     gearhead_ratio: Positive = required("motor turns per turn of the gearhead, no unit")
     capstan_ratio: Positive = required("gearhead turns per turn of the joint, no unit")
-    speed_torque_gradient: field.TorqueGradient = required(
-        "command per torque at the motor shaft, in rpm/(N*m) (thesis 4.10)"
-    )
+    speed_torque_gradient: field.TorqueGradient = required("at the shaft, rpm/(N*m) (thesis 4.10)")
     coulomb_friction: field.Command = required("dry friction as a command (thesis 4.1)")
     encoder_counts: Counts = required("counts of the encoder per turn of the gearhead's output")
 
@@ -194,15 +174,9 @@ class RobotControlSpec(SpecModel, stronger="neither"):
 class BalancedLegSpec(SpecModel, stronger="neither"):
     """Counter-masses and spring of one side leg (thesis 4.4)."""
 
-    arm_center_of_mass: field.Length = required(
-        "G_c, center of mass of the arm from the coupler's end, in m"
-    )
-    coupler_counter_arm: field.Length = required(
-        "B_b, counter-mass of the coupler from the elbow, in m"
-    )
-    arm_counter_arm: field.Length = required(
-        "B_c, counter-mass of the arm from the coupler's end, in m"
-    )
+    arm_center_of_mass: field.Length = required("G_c of the arm from the coupler's end, in m")
+    coupler_counter_arm: field.Length = required("B_b of the coupler's mass from the elbow, in m")
+    arm_counter_arm: field.Length = required("B_c of the arm's mass from the coupler's end, in m")
     spring_on_crank: field.Length = required("A0C_A, spring on the crank from the base joint")
     spring_on_base: field.Length = required("A0D0, spring on the base from the base joint, in m")
 
@@ -227,7 +201,7 @@ class RobotSpec(SpecModel, stronger="unknown"):
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     gravity: field.Gravity = required("gravitational acceleration, m/s^2", "neither")
     base_tilt: field.SignedAngle = required(
-        "theta4, rotation of the base against the vertical (thesis 3.40)", "neither"
+        "theta4 of the base against the vertical (thesis 3.40)", "neither"
     )
     legs: LegsSpec = required("the three legs")
     platform: PlatformSpec = required("mobile platform with the endoscope")

@@ -60,29 +60,19 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
     """
 
     period: field.Duration = required("time between two samples in s")
-    delay: Delay = required(
-        "age of the force sample that the law uses, in samples: one number, or "
-        "[smallest, largest] for a delay that may differ at every sample"
-    )
+    delay: Delay = required("age of the force in samples: one number, or [smallest, largest]")
     latency: field.TimeRange | None = optional(
-        "time in s from a sample to where its command takes effect: one number, or [shortest, "
-        "longest] for one that may differ at every sample; default: at once"
+        "time in s from a sample to its command: one, or [shortest, longest]; default: at once"
     )
-    jitter: field.Duration | None = optional(
-        "by how much, in s, a period may be longer or shorter than `period`, each for itself"
-    )
+    jitter: field.Duration | None = optional("by how much, in s, a period may differ from `period`")
     outer_period: field.Duration | None = optional(
-        "time between two samples of the outer loop (filter of the force and "
-        "admittance) in s, where it is not that of the motion loop: a whole number of its "
-        "periods, or a whole part of one; `delay` counts samples of the force, so these",
+        "period of filter and admittance in s, where it is not that of the motion loop: a whole "
+        "multiple or part of it; `delay` counts its samples",
         unsaid="other",
     )
-    misses: DeadlinesSpec | None = optional(
-        "how many periods may miss their deadline, and what happens in these; default: none"
-    )
+    misses: DeadlinesSpec | None = optional("periods that may miss their deadline; default: none")
     admittance: Literal["exact", "euler"] = optional(
-        "how Mt vm' + Bt vm = F becomes a step: exact for a force held over the "
-        "period, or one step of Euler's method",
+        "step of Mt vm' + Bt vm = F: exact for a held force, or by Euler's method",
         "exact",
         stronger="neither",
     )
@@ -155,38 +145,27 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
 class DisturbancesSpec(SpecModel, stronger="larger"):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
-    command: field.AngularVelocity | None = optional(
-        "largest velocity command in rad/s, however it changes"
-    )
-    friction: field.DriveCommand | None = optional(
-        "largest Coulomb friction of the motor, as the command that it takes, in the "
-        "unit of the commands, such as rpm"
-    )
-    encoder_step: field.Angle | None = optional(
-        "resolution of the measured joint angle in rad: an error of half a step"
-    )
-    force_step: field.Torque | None = optional(
-        "resolution of the measured torque in N*m: an error of half a step"
-    )
+    command: field.AngularVelocity | None = optional("largest velocity command in rad/s")
+    friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")
+    encoder_step: field.Angle | None = optional("resolution of the joint angle in rad")
+    force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
 
     largest_angle: field.Angle | None = optional(
-        "largest joint angle and reference in rad that the law holds as "
-        "single-precision numbers: their absolute rounding acts as a disturbance"
+        "largest joint angle and reference in rad, whose float32 rounding acts as a disturbance"
     )
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:
         """Return the bounds by the names of what disturbs, with their units; none too small."""
-        half = Fraction(1, 2)
         command = "" if self.friction is None else command_unit(self.friction.dimension)
         written = (
-            ("velocity command", self.command, Fraction(1), "rad/s"),
-            ("friction", self.friction, Fraction(1), command),
-            ("encoder error", self.encoder_step, half, "rad"),
-            ("force error", self.force_step, half, "N*m"),
+            ("velocity command", self.command, 1, "rad/s"),
+            ("friction", self.friction, 1, command),
+            ("encoder error", self.encoder_step, 2, "rad"),
+            ("force error", self.force_step, 2, "N*m"),
         )
         return {
-            name: (share * quantity.not_below, unit)
-            for name, quantity, share, unit in written
+            name: (quantity.not_below / parts, unit)
+            for name, quantity, parts, unit in written
             if quantity is not None and quantity.value
         }
 

@@ -94,8 +94,7 @@ class CommandProfileSpec(SpecModel, stronger="unknown", unsaid="other"):
 
     constant: field.SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
     points: Breakpoints | None = optional(
-        "breakpoints [[time, velocity], ...], with straight lines between (thesis fig. "
-        "6.7); the last velocity is kept. A time that is there twice is a jump"
+        "[[time, velocity], ...], straight lines between; a time twice is a jump, the last is kept"
     )
     sinusoid: SinusoidSpec | None = optional("{amplitude: ..., frequency: ..., offset: ...}")
 
@@ -108,7 +107,7 @@ class SurfaceSpec(SpecModel, stronger="unknown", unsaid="other"):
     environment: Label = required("name of the environment")
     at: field.SignedAngle = required("angle of its surface in rad")
     side: Literal["above", "below"] = optional(
-        "above: met by rising angles; below: by falling ones", "above"
+        "above: for rising angles; below: for falling", "above"
     )
     parameters: Literal["nominal", "lowest", "highest"] = optional(
         "which end of its ranges it has: all parameters alike", "nominal"
@@ -137,20 +136,14 @@ class ControlSpec(SpecModel, stronger="unknown", unsaid="other"):
     """Which controller is in force when, in one of six ways."""
 
     fixed: Label | None = optional("one controller all the time")
-    schedule: Schedule | None = optional(
-        "switches at times, [[0 s, insertion], [2 s, withdrawal], ...]"
-    )
-    sign: SignControlSpec | None = optional(
-        "{insertion: ..., withdrawal: ...}, by command and torque"
-    )
+    schedule: Schedule | None = optional("[[0 s, insertion], [2 s, withdrawal], ...]")
+    sign: SignControlSpec | None = optional("{insertion: ..., withdrawal: ...}, by the signs")
     contact: Annotated[dict[Label, Label], Field(min_length=1)] | None = optional(
-        "environment -> controller, by what was touched last (thesis 6.4), such as "
-        "{soft: tissue, stiff: tool}; the first one before any contact"
+        "environment -> controller, by the last contact (thesis 6.4), such as {soft: tissue}; the "
+        "first one before any contact"
     )
     threshold: ThresholdControlSpec | None = optional("{position: ..., force: ..., torque: ...}")
-    logic: Literal["mode-logic"] | None = optional(
-        "mode-logic: as the spec's mode_logic says (thresholds)"
-    )
+    logic: Literal["mode-logic"] | None = optional("mode-logic: as the spec's mode_logic says")
 
     checks = one_of(
         "control is given in one way", "write fixed, schedule, sign, contact, threshold or logic"
@@ -176,26 +169,18 @@ class ControlSpec(SpecModel, stronger="unknown", unsaid="other"):
 class ErrorsSpec(SpecModel, stronger="larger"):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
-    friction: field.DriveCommand | None = optional(
-        "Coulomb friction of the motor, as the command that it takes, such as rpm"
-    )
+    friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")
     encoder_step: field.Angle | None = optional("resolution of the measured joint angle in rad")
     force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
-    force_noise: field.Torque | None = optional(
-        "standard deviation of white noise on the torque in N*m"
-    )
-    jitter: UnitFraction | None = optional(
-        "how far a sample may be late, as a share of the period; the law does not know"
-    )
+    force_noise: field.Torque | None = optional("standard deviation of torque noise in N*m")
+    jitter: UnitFraction | None = optional("how late a sample may be, as a share of the period")
 
 
 class ScenarioLimitsSpec(SpecModel, stronger="smaller"):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
     torque: field.Torque | None = optional("largest torque of the tissue in N*m")
-    deflection: field.Angle | None = optional(
-        "largest depth below a surface in rad, about the pivot"
-    )
+    deflection: field.Angle | None = optional("largest depth below a surface in rad")
     velocity: field.AngularVelocity | None = optional("largest speed of the axis in rad/s")
 
     checks = (
@@ -214,26 +199,17 @@ class ScenarioSpec(SpecModel, stronger="unknown", unsaid="other"):
     title: Title = optional("one line for people, at most 200 characters", "", stronger="beside")
     command: CommandProfileSpec = required("velocity that the surgeon commands")
     duration: field.Duration | None = optional(
-        "length of the run in s, at most an hour; default: that of points", stronger="larger"
+        "length in s, at most an hour; default: that of points", stronger="larger"
     )
-    start: field.SignedAngle | None = optional(
-        "angle at which the axis rests at first, in rad; default: 0"
-    )
-    surfaces: Surfaces = optional(
-        "what is touched where; where several are, forces add up. Default: nothing", ()
-    )
-    control: ControlSpec | None = optional(
-        "which controller is in force; default: the spec's mode_logic, else the first controller"
-    )
+    start: field.SignedAngle | None = optional("angle in rad at the start, at rest; default: 0")
+    surfaces: Surfaces = optional("what is touched where; forces add up; default: nothing", ())
+    control: ControlSpec | None = optional("who is in force; default: mode_logic, or the first")
     wanted_torque: field.Torque | None = optional(
-        "Fd of force controllers in N*m, towards rising angles; default: limits.torque"
+        "Fd in N*m, to rising angles; default: limits.torque"
     )
-    errors: ErrorsSpec | None = optional(
-        "friction, resolutions, noise and jitter; for the sampled engine", unsaid="nothing"
-    )
+    errors: ErrorsSpec | None = optional("errors of the sampled engine", unsaid="nothing")
     limits: ScenarioLimitsSpec | None = optional(
-        "what the run must keep for the gate to pass (NRS109), such as "
-        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
+        "limits for the gate (NRS109), such as {torque: 0.3 N*m}; default: no simulation",
         unsaid="nothing",
     )
     seed: Seed = optional("of noise, jitter and varying delay", 0)

@@ -22,28 +22,24 @@ class MonitoringSpec(SpecModel, stronger="unknown"):
     """
 
     torque_noise: field.Torque = required(
-        "largest error of a reading of the torque in N*m, with bias, drift and half a "
-        "step of the sensor: a bound, no standard deviation"
+        "largest error of a reading of the torque in N*m, all causes; no standard deviation"
     )
     angle_noise: field.Angle = required(
-        "largest error of a reading of the joint angle in rad: half a step of the "
-        "encoder, and what the joint bends between encoder and contact"
+        "largest error of a reading of the angle in rad: half an encoder step, and bending"
     )
     surface: Surface = required(
-        "where the surface is that the torque is counted from: fixed (one place for "
-        "the whole run), free (it may move while nothing is touched, and stands still from the "
-        "last sample before the touch on), or touched (it may move until contact is certain)"
+        "where the surface is that the torque is counted from: fixed (one place for the whole "
+        "run), free (moves until the last sample before the touch) or touched (moves until "
+        "contact is certain)"
     )
     surface_speed: field.AngularVelocity | None = optional(
-        "how fast the surface may move all the same, in rad/s about the pivot, such as "
-        "with a breath; default: it stands still"
+        "speed of the surface in rad/s about the pivot, as with a breath; default: it stands still"
     )
     speed: field.AngularVelocity | None = optional(
-        "largest speed of the joint in rad/s, which the monitor tests, too; required "
-        "with skew, and for a tissue with damping"
+        "largest speed of the joint in rad/s; required with skew, and for a tissue with damping"
     )
     skew: field.Duration | None = optional(
-        "largest time between the reading of a torque and that of its angle, in s"
+        "largest time between readings of torque and angle, in s"
     )
 
     checks = (
@@ -72,12 +68,9 @@ class SensorSpec(SpecModel, stronger="larger"):
     """
 
     bias: field.Torque | None = optional(
-        "largest lasting error of the torque about the pivot, in N*m: after taring, with what "
-        "drifts until the next and what a tool's weight leaves"
+        "largest lasting error of the torque in N*m: drift and a tool's weight after taring"
     )
-    resolution: field.Torque | None = optional(
-        "step of the measured torque in N*m: an error of half a step"
-    )
+    resolution: field.Torque | None = optional("step of the measured torque in N*m")
     filter: FilterSpec | None = optional("low-pass of the force signal: a part of the loop")
 
     checks = (

@@ -8,30 +8,20 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec import switching as rules
+from nrs_design.spec.certification import SearchExtent
 from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.misses import MissesSpec
 from nrs_design.spec.model import SpecModel, optional, required
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
-from nrs_design.spec.switching import (
-    MAX_DIMENSION,
-    MAX_TRANSITIONS,
-    DwellObstacle,
-    ResetSpec,
-    SwitchingRule,
-    Transition,
-    matrix_checks,
-    short_denominator,
-    switching_checks,
-)
 
 MAX_MODES = 20_000
 MAX_ENTRIES = 1_000_000
 
-_Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
-_Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=MAX_DIMENSION)]
+_Row = Annotated[tuple[Entry, ...], Field(min_length=1, max_length=rules.MAX_DIMENSION)]
+_Matrix = Annotated[tuple[_Row, ...], Field(min_length=1, max_length=rules.MAX_DIMENSION)]
 
 
 class ModeSpec(SpecModel, stronger="neither"):
@@ -39,9 +29,9 @@ class ModeSpec(SpecModel, stronger="neither"):
 
     name: Label = required("name of the mode, unique in this file")
     A: _Matrix = required(
-        "state matrix as a list of rows, n x n with n <= 64; integers, decimals, "
-        '"p/q" or expressions that are affine in the parameters such as "3/4*k - m + 0.5", read '
-        "exactly; unit 1/s in continuous time"
+        "n x n state matrix as a list of rows, n <= 64, in 1/s in continuous time; integers, "
+        'decimals, "p/q" or expressions such as "3/4*k - m + 0.5" that are affine in the '
+        "parameters"
     )
 
     @property
@@ -64,7 +54,7 @@ class ModeSpec(SpecModel, stronger="neither"):
         return (rows, columns) if even and rows != columns else None
 
     checks = (
-        *matrix_checks(
+        *rules.matrix_checks(
             "A",
             lambda s: s.A,
             lambda s: (number for row in s.A for e in row for number in e.numbers),
@@ -92,24 +82,18 @@ class SwitchedSystemSpec(SpecModel, stronger="unknown"):
     modes: Annotated[tuple[ModeSpec, ...], Field(min_length=1, max_length=MAX_MODES)] = required(
         "the modes, at least one; of the same size, unless resets link them"
     )
-    switching: SwitchingRule = required(
-        "when modes change: arbitrary, or rules with dwell_time and transitions"
-    )
+    switching: rules.SwitchingRule = required("arbitrary, or rules with dwell_time and transitions")
     misses: MissesSpec | None = optional(
-        "how many steps may miss their deadline, in discrete time, in the place of rules of "
-        "switching; the other modes are what a step in time brings about",
+        "deadlines that may be missed, in discrete time, instead of rules of switching",
         unsaid="most",
     )
-    resets: Annotated[tuple[ResetSpec, ...], Field(max_length=MAX_TRANSITIONS)] = optional(
-        "what switches do to the state; the others leave it as it is. Several from one "
-        "mode to another are as many switches: any one of them may happen",
-        (),
+    resets: Annotated[tuple[rules.ResetSpec, ...], Field(max_length=rules.MAX_TRANSITIONS)] = (
+        optional(
+            "what switches do to the state; of several for one switch any may happen",
+            (),
+        )
     )
-    # The default is made without validation, for which a validator of its own would be built.
-    certification: CertificationSpec = Field(
-        default_factory=CertificationSpec.model_construct,
-        description="how far the search for a proof goes",
-    )
+    certification: SearchExtent
 
     @property
     def dimension(self) -> int:
@@ -121,12 +105,12 @@ class SwitchedSystemSpec(SpecModel, stronger="unknown"):
         """Whether a parameter has a range."""
         return any(not parameter.fixed for parameter in self.parameters.values())
 
-    def find_dwell_obstacle(self) -> DwellObstacle | None:
+    def find_dwell_obstacle(self) -> rules.DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""
         # A proof with a dwell time rests on one constant matrix from each switch to the next.
         for name, parameter in self.parameters.items():
             if not parameter.fixed:
-                return DwellObstacle(
+                return rules.DwellObstacle(
                     f"a dwell time and the range of parameter {name!r} exclude each other: the "
                     "proof with a dwell time holds for constant matrices only",
                     "give the parameter its nominal value only",
@@ -134,15 +118,11 @@ class SwitchedSystemSpec(SpecModel, stronger="unknown"):
         return None
 
 
-def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, ResetSpec, bool]]:
+def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, rules.ResetSpec, bool]]:
     """Yield resets, and whether their modes are there."""
     names = {mode.name for mode in spec.modes}
     for index, reset in enumerate(spec.resets):
         yield ("resets", index), reset, names >= {reset.source, reset.target}
-
-
-def _to_itself(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, bool]]:
-    return (((*at, "to"), reset.source == reset.target) for at, reset, _ in _resets(spec))
 
 
 def _not_allowed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
@@ -240,7 +220,7 @@ def _sizes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, int,
             return
 
 
-def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[Transition, Location]]:
+def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[rules.Transition, Location]]:
     """Yield the allowed transitions, and where to report a fault of each."""
     if spec.switching.transitions is not None:
         for index, transition in enumerate(spec.switching.transitions):
@@ -256,7 +236,7 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
     refuse(_renamed, "another mode is named {0!r}", "rename it"),
     refuse(_undeclared, "{0!r} is not a number, and there is no parameter of that name", "{1}"),
     Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
-    short_denominator(
+    rules.short_denominator(
         "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
     ),
     Row(
@@ -271,7 +251,7 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         f"the modes have {{0}} corners in all, at most {MAX_MODES} are read",
         "declare fewer parameters",
     ),
-    *switching_checks(
+    *rules.switching_checks(
         lambda s: s.switching, lambda s: dict.fromkeys(mode.name for mode in s.modes), "mode"
     ),
     refuse(_other_units, "{0!r} is not a dwell time in {1} time, expected {2}", "such as {3!r}"),
@@ -303,7 +283,11 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
         "there is no mode of a step in time",
         "add the mode of a hit beside that of a miss",
     ),
-    refuse(_to_itself, "a switch leads to another mode", "name two modes"),
+    refuse(
+        lambda s: (((*at, "to"), r.source == r.target) for at, r, _ in _resets(s)),
+        "a switch leads to another mode",
+        "name two modes",
+    ),
     refuse(
         _not_allowed,
         "the switch from {0} to {1} is not allowed",

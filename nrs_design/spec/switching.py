@@ -135,16 +135,11 @@ class SwitchingSpec(SpecModel, unsaid="most"):
     """Rules for the switching signal; without any, it is arbitrary."""
 
     dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = optional(
-        "shortest time in a mode before the next switch, in s; a number of steps in discrete time; "
-        "one for all modes, or by name: {a: 1 s, b: 2 s}",
+        "shortest time in a mode in s or steps; one for all, or by name: {a: 1 s, b: 2 s}",
         stronger="smaller",
     )
     longest_dwell_time: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = (
-        optional(
-            "longest time in a mode, by which it must be left; one for all modes, or by name: "
-            "{a: 5 s}",
-            stronger="larger",
-        )
+        optional("longest time in a mode; one for all, or by name: {a: 5 s}", stronger="larger")
     )
     transitions: Annotated[
         tuple[Transition, ...] | None, ParsedBy(_read_transitions, _TRANSITIONS_SCHEMA)
@@ -282,8 +277,7 @@ class ResetSpec(SpecModel, stronger="neither"):
     source: Label = Field(alias="from", description="name of the mode before the switch")
     target: Label = Field(alias="to", description="name of the mode after the switch")
     map: _Matrix = required(
-        "matrix of x+ = map x as a list of rows, as many rows as the mode after the "
-        "switch has states, as many columns as the mode before it; exact numbers"
+        "matrix of x+ = map x as a list of rows, exact: states after by states before the switch"
     )
 
     @property

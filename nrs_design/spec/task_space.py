@@ -48,7 +48,7 @@ class TaskSpaceSpec(SpecModel):
     title: Title | None = optional("what reports are headed with")
     common: _Keys = optional("keys of an interaction-design that every axis has", {})
     axes: Annotated[dict[Name, _Keys], Field(min_length=1, max_length=MAX_AXES)] = required(
-        "by the name of each axis the keys of an interaction-design that it has alone"
+        "keys of an interaction-design that each axis has alone, by its name"
     )
 
     checks = (

@@ -67,9 +67,7 @@ class LogicSignalsSpec(SpecModel, stronger="unknown", unsaid="most"):
     """What the logic sees."""
 
     command: CommandSignalSpec | None = optional("velocity command, positive towards the tissue")
-    torque: TorqueSignalSpec | None = optional(
-        "torque of the tissue on the robot, positive where it is pushed"
-    )
+    torque: TorqueSignalSpec | None = optional("torque of the tissue, positive where it is pushed")
 
 
 _ONE_SIDE = Row[Any](
@@ -112,8 +110,8 @@ class LogicSwitchSpec(SpecModel, stronger="unknown", unsaid="most"):
     @property
     def conditions(self) -> dict[str, Condition]:
         """The conditions by signal."""
-        written = {"command": self.command, "torque": self.torque}
-        return {name: condition for name, condition in written.items() if condition is not None}
+        written = (("command", self.command), ("torque", self.torque))
+        return {name: condition for name, condition in written if condition is not None}
 
     checks = (
         Row(
@@ -145,17 +143,15 @@ class SwitchSeparation:
 class ThresholdLogicSpec(SpecModel, stronger="unknown"):
     """Controllers that follow each other by thresholds on command and torque."""
 
-    type: Literal["thresholds"] = required(
-        "thresholds: switches by the size and the sign of command and torque"
-    )
+    type: Literal["thresholds"] = required("thresholds: switches by command and torque")
     start: Label = required("controller that is active at first")
     signals: LogicSignalsSpec = required("what the logic sees, and how well")
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
-    ] = required("switches from one controller to another; the first that may be made is")
+    ] = required("switches between controllers; the first that may be made is")
     hold: Annotated[DwellTimes | None, ParsedBy(read_dwell_times, DWELL_SCHEMA)] = at_most(
-        "shortest time in s for which a controller is held whatever the signals "
-        "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
+        "shortest time in s for each controller; one for all, or by name. Default: thresholds, "
+        "noise and age",
         unsaid="most",
     )
 
@@ -255,12 +251,9 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         entering, leaving = self.switches[i].conditions, self.switches[j].conditions
         best = SwitchSeparation(i, j, None, Fraction(0))
         for name in entering.keys() & leaving.keys():
-            ends = _opposed(entering[name], leaving[name])
-            if ends is None:
-                continue
-            seconds = _least_time(*ends, getattr(self.signals, name))
-            if seconds > best.seconds:
-                best = SwitchSeparation(i, j, name, seconds)
+            if ends := _opposed(entering[name], leaving[name]):
+                seconds = _least_time(*ends, getattr(self.signals, name))
+                best = max(best, SwitchSeparation(i, j, name, seconds), key=lambda b: b.seconds)
         return best
 
 

@@ -27,39 +27,22 @@ MAX_UNIT_LENGTH = 60
 MAX_UNIT_EXPONENT = 9
 
 _SYMBOL = re.compile(r"[A-Za-z]+")
+_RANGED = "{nominal: ..., range: [lowest, highest]}"
 _STRANGE = {
-    "±": "write {nominal: ..., range: [lowest, highest]}",
-    "+-": "write {nominal: ..., range: [lowest, highest]}",
-    "%": "write numbers in the unit; a tolerance is {nominal: ..., range: [lowest, highest]}",
-    "·": "write a product with '*'",
-    "⋅": "write a product with '*'",
-    "×": "write a product with '*'",
+    **dict.fromkeys(("±", "+-"), f"write {_RANGED}"),
+    "%": f"write numbers in the unit; a tolerance is {_RANGED}",
+    **dict.fromkeys("·⋅×", "write a product with '*'"),
     "°": "write deg for degrees",
     "²": "write ^2 for a square",
     "³": "write ^3 for a cube",
-    "µ": "write the number in the unit without the prefix",
-    "μ": "write the number in the unit without the prefix",
+    **dict.fromkeys("µμ", "write the number in the unit without the prefix"),
 }
-_LIKELY = {
-    "Nm": "N*m",
-    "Nms": "N*m*s",
-    "kgm": "kg*m",
-    "sec": "s",
-    "second": "s",
-    "seconds": "s",
-    "degree": "deg",
-    "degrees": "deg",
-    "hz": "Hz",
-    "HZ": "Hz",
-    "radian": "rad",
-    "radians": "rad",
-    "newton": "N",
-    "meter": "m",
-    "RPM": "rpm",
-    "volt": "V",
-    "ampere": "A",
-    "PWM": "counts",
-}
+# What is meant by other words, beside units in other capitals.
+_OTHER_WORDS = (
+    "Nm=N*m Nms=N*m*s kgm=kg*m sec=s second=s seconds=s degree=deg degrees=deg radian=rad "
+    "radians=rad newton=N meter=m volt=V ampere=A PWM=counts"
+)
+_LIKELY = dict(pair.split("=") for pair in _OTHER_WORDS.split())
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,18 +62,9 @@ class Unit:
         )
 
 
-def _unit(
-    factor: Fraction | int = 1,
-    pi_power: int = 0,
-    *,
-    kg: int = 0,
-    m: int = 0,
-    s: int = 0,
-    rad: int = 0,
-    command: str = "",
-) -> Unit:
-    commands = (int(unit == command) for unit in COMMAND_UNITS)
-    return Unit(Fraction(factor), pi_power, (kg, m, s, rad, *commands))
+def _unit(factor: Fraction | int = 1, pi_power: int = 0, **powers: int) -> Unit:
+    """Return a unit, by its factor and the powers of base units."""
+    return Unit(Fraction(factor), pi_power, tuple(powers.get(unit, 0) for unit in BASE_UNITS))
 
 
 ONE = _unit()
@@ -115,12 +89,12 @@ UNITS = {
     "kN": _unit(1000, kg=1, m=1, s=-2),
     "Hz": _unit(2, 1, rad=1, s=-1),
     "kHz": _unit(2000, 1, rad=1, s=-1),
-    "rpm": _unit(command="rpm"),
-    "V": _unit(command="V"),
-    "mV": _unit(Fraction(1, 1000), command="V"),
-    "A": _unit(command="A"),
-    "mA": _unit(Fraction(1, 1000), command="A"),
-    "counts": _unit(command="counts"),
+    "rpm": _unit(rpm=1),
+    "V": _unit(V=1),
+    "mV": _unit(Fraction(1, 1000), V=1),
+    "A": _unit(A=1),
+    "mA": _unit(Fraction(1, 1000), A=1),
+    "counts": _unit(counts=1),
 }
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from nrs_design.simulation.norms import (
-    level_curve,
     polynomial_norm,
     quadratic_norm,
     scaled_matrices,
@@ -32,12 +31,3 @@ def test_integers_beyond_doubles_keep_their_ratios():
     values = norm(np.eye(2))
     assert values[1] / values[0] == pytest.approx(2.0)
     assert scaled_matrices(Q)[0] == pytest.approx(np.diag([0.25, 1.0]))
-
-
-def test_level_curve_of_a_thin_ellipse():
-    norm = quadratic_norm(np.array([[1.0, 0.999], [0.999, 1.0]]))
-    x, y = level_curve(norm, 2.0)
-    points = np.stack([x, y], axis=1)
-    assert norm(points) == pytest.approx(2.0)
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    assert steps.max() < 0.02 * np.abs(points).max()

@@ -6,7 +6,8 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import InteractionDesignSpec, ModeSpec, SwitchedSystemSpec, parse_spec
+from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec, parse_spec
+from nrs_design.spec.switched_system import ModeSpec
 from tests.tables import spec_text
 
 IMPEDANCE, FORCE, SWITCHED = map(spec_text, ("impedance", "force", "switched"))
@@ -37,10 +38,10 @@ def spoiled(sample: str, old: str, new: str) -> str:
     return sample.replace(old, new)
 
 
-def refusal(text: str) -> SpecError:
+def refusal(text: str, read: Callable[[str], object] = parse_spec) -> SpecError:
     """Return the error that a text must cause; its position lies in the text."""
     with pytest.raises(SpecError) as caught:
-        parse_spec(text)
+        read(text)
     assert_inside(caught.value, text)
     return caught.value
 

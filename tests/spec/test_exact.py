@@ -10,8 +10,6 @@ from nrs_design.spec.exact import parse_exact
 from tests.support import ends_soon
 from tests.tables import rows
 
-from .samples import message_of
-
 
 @pytest.mark.parametrize(("text", "value"), rows(__file__, "test_reads_exactly"))
 def test_reads_exactly(text: str, value: str) -> None:
@@ -38,8 +36,3 @@ def test_ratios_survive_the_round_trip(number: Fraction) -> None:
     text = str(number)
     if len(text) <= 100:
         assert parse_exact(text) == number
-
-
-@given(st.text(max_size=120))
-def test_garbage_is_a_number_or_refused(text: str) -> None:
-    assert message_of(lambda: parse_exact(text)).isprintable()

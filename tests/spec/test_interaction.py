@@ -1,12 +1,4 @@
-from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
-
-
-def test_environments_may_be_missing_without_contact() -> None:
-    head, _, rest = FORCE.partition("environments:\n")
-    tail = "controllers:\n  free: {type: position}\nswitching: arbitrary\n"
-    assert interaction(head + tail).environments == {}
-    error = refusal(head + "controllers:" + rest.partition("controllers:")[2])
-    assert "there is no environment 'soft'" in error.message
+from .samples import IMPEDANCE, place_of, refusal, spoiled
 
 
 def test_reports_the_first_fault_and_counts_the_others() -> None:

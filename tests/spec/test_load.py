@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import SwitchedSystemSpec, load_spec, read_spec
-from nrs_design.spec.document import Node, hash_meaning, parse_document, to_data
+from nrs_design.spec.document import hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from tests.support import COMMUTING
 
@@ -23,7 +23,7 @@ def test_read_spec_keeps_text_and_hash(tmp_path: Path) -> None:
     path.write_bytes(content)
     loaded = read_spec(path)
     assert loaded.path == path
-    assert loaded.sha256 == hash_meaning(to_data(parse_document(SWITCHED)))
+    assert loaded.sha256 == hash_of(SWITCHED)
     assert loaded.text == content.decode()
     assert isinstance(loaded.spec, SwitchedSystemSpec)
     assert load_spec(str(path)) == loaded.spec
@@ -40,11 +40,13 @@ SAME = [
 ]
 
 
+def hash_of(text: str) -> str:
+    return hash_meaning(to_data(parse_document(text)))
+
+
 @pytest.mark.parametrize("text", SAME)
 def test_the_hash_does_not_depend_on_how_it_is_written(text: str) -> None:
-    assert hash_meaning(to_data(parse_document(text))) == hash_meaning(
-        to_data(parse_document(SAID))
-    )
+    assert hash_of(text) == hash_of(SAID)
 
 
 TREES = st.recursive(
@@ -56,10 +58,7 @@ TREES = st.recursive(
 
 @given(TREES, TREES)
 def test_equal_hashes_mean_equal_documents(one: object, other: object) -> None:
-    def written(tree: object) -> Node:
-        return parse_document(json.dumps(tree, indent=1))
-
-    same = hash_meaning(to_data(written(one))) == hash_meaning(to_data(written(other)))
+    same = hash_of(json.dumps(one, indent=1)) == hash_of(json.dumps(other, indent=1))
     # The order of keys counts, as it does in the text.
     assert same is (json.dumps(one) == json.dumps(other))
 
@@ -73,14 +72,19 @@ def test_error_names_the_file(tmp_path: Path) -> None:
     assert str(caught.value).startswith(f"{path}:2:7: ")
 
 
+def printed(code: str) -> list[str]:
+    """Return the lines that a program prints."""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.splitlines()
+
+
 def test_import_is_light() -> None:
     heavy = ["numpy", "scipy", "control", "matplotlib", "cvxpy", "clarabel", "jinja2", "rich"]
     code = (
         "import sys, nrs_design.spec, nrs_design.spec.describe, nrs_design.spec.templates\n"
         f"print([name for name in {heavy} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert printed(code) == ["[]"]
 
 
 def test_a_spec_pays_for_the_models_of_its_kind_only() -> None:
@@ -90,8 +94,7 @@ def test_a_spec_pays_for_the_models_of_its_kind_only() -> None:
         f"nrs_design.spec.read_spec({str(COMMUTING)!r})\n"
         "print(*(name for name in sys.modules if name.startswith('nrs_design.spec.')))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    first, loaded = done.stdout.splitlines()
+    first, loaded = printed(code)
     assert first == "False"
     assert "nrs_design.spec.switched_system" in loaded
     for other in ("interaction", "controllers", "environment", "robot"):

@@ -3,23 +3,12 @@
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import doubt_spec, parse_spec
-from nrs_design.spec.describe import describe
+from nrs_design.spec import parse_spec
 
 from .samples import IMPEDANCE, spoiled
 
 ARM = "    lever_arm: 0.24 m\n"
 DOUBT = '    doubts: ["a: the residual is 46 % of the range of the force"]\n'
-REASON = "    accept_doubt: a phantom, to be measured again\n"
-
-
-def test_doubts_and_what_a_range_holds_are_listed():
-    spec = parse_spec(spoiled(IMPEDANCE, ARM, f"{ARM}{DOUBT}{REASON}    range_covers: tolerance\n"))
-    rows = {row.name: row for row in describe(spec)}
-    assert "46 %" in rows["environments.soft.doubts[0]"].written
-    assert rows["environments.soft.accept_doubt"].written == "a phantom, to be measured again"
-    assert rows["environments.soft.range_covers"].value.startswith("95 % of all such specimens")
-    assert not any("doubts" in doubt.at for doubt in doubt_spec(spec))
 
 
 COVERED = "    range_covers: tolerance\n"

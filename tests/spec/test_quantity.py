@@ -1,13 +1,16 @@
 import dataclasses
 import math
 from fractions import Fraction
+from functools import partial
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.spec import Quantity, kinds
+from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.quantity import QuantityKind, is_less, parse_quantity
+from nrs_design.spec.units import parse_unit
 
 from .samples import message_of
 
@@ -43,6 +46,10 @@ def test_order_does_not_depend_on_units(a: Fraction, b: Fraction) -> None:
     assert is_less(newton, millimeter) == (a < b)
 
 
-@given(st.text(max_size=60), st.sampled_from(ALL_KINDS))
-def test_garbage_is_a_quantity_or_refused(text: str, kind: QuantityKind) -> None:
-    assert message_of(lambda: parse_quantity(text, kind)).isprintable()
+@given(
+    st.text(max_size=120) | st.text("mskgradN*/^()1-29 ", max_size=80), st.sampled_from(ALL_KINDS)
+)
+def test_garbage_is_read_or_refused(text: str, kind: QuantityKind) -> None:
+    """As a number, a unit or a quantity."""
+    for read in (parse_exact, parse_unit, partial(parse_quantity, kind=kind)):
+        assert message_of(partial(read, text)).isprintable()

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.spec import LoadedSpec, parse_spec
-from nrs_design.spec.document import parse_document, to_data
+from nrs_design.spec.document import to_data
 from nrs_design.spec.edits import changed, with_edits
 from nrs_design.spec.load import respecified
 from nrs_design.spec.relaxations import PARTS, SpecRelaxation, calmer, iterate_relaxations
@@ -25,10 +25,7 @@ PARTS_OF = table(Path(__file__).with_suffix(".yaml"))["parts"]
 
 
 def loaded(text: str) -> LoadedSpec:
-    root = parse_document(text)
-    return LoadedSpec(
-        path=Path("a.nrs.yaml"), sha256="", text=text, spec=parse_spec(text), parsed=root
-    )
+    return LoadedSpec(path=Path("a.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
 
 
 def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, SpecRelaxation]:
@@ -95,10 +92,8 @@ def test_a_range_of_times_keeps_its_shortest():
 def test_a_dwell_time_begins_where_every_mode_has_decayed():
     text = (ROOT / "specs/examples/commuting.nrs.yaml").read_text(encoding="utf-8")
     line = lines_of(loaded(text), 0.5)["switching"]
-    times = [
-        Fraction(line.weakest.value_at(step)["dwell_time"].removesuffix(" s"))
-        for step in range(line.weakest.size)
-    ]
+    steps = map(line.weakest.value_at, range(line.weakest.size))
+    times = [Fraction(said["dwell_time"].removesuffix(" s")) for said in steps]
     assert times == sorted(times, reverse=True)
     assert times[0] == 128
     assert times[-1] < Fraction(1, 100)

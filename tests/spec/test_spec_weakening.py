@@ -93,10 +93,15 @@ def values_of(model, key, *each):
     return [model.model_construct(**{key: field.validate_python(value)}) for value in each]
 
 
+def unit_in(schema):
+    """Return the unit of the first example of a quantity, or nothing."""
+    unit = re.search(r'"examples": \["\S+ ([^"]+)"', json.dumps(schema))
+    return unit[1] if unit else ""
+
+
 def two_values(model, key, schema):
     """Read a field twice, a larger value and a smaller one; nothing if it is no such field."""
-    unit = re.search(r'"examples": \["\S+ ([^"]+)"', json.dumps(schema))
-    low, high = (f"{n} {unit[1]}" if unit else n for n in ("1", "2"))
+    low, high = (f"{n} {unit_in(schema)}".strip() for n in ("1", "2"))
     for each in ((low, high), ((low, low), (low, high)), ("1.25", "1.5"), ("0.25", "0.5")):
         try:
             return values_of(model, key, *each)
@@ -133,10 +138,7 @@ def test_a_narrower_range_of_a_drive_is_weaker_and_another_drive_is_not(name):
     model = MODELS[name]
     for key, field in model.model_fields.items():
         if RANGED & models_in(field.annotation):
-            unit = re.search(
-                r'"examples": \["\S+ ([^"]+)"',
-                json.dumps(model.model_json_schema()["properties"][key]),
-            )[1]
+            unit = unit_in(model.model_json_schema()["properties"][key])
             low, middle, high = (f"{n} {unit}" for n in (1, 2, 3))
             wide = {"nominal": middle, "range": (low, high)}
             said = values_of(model, key, wide, wide | {"range": (low, middle)}, low, high)

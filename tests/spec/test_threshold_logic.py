@@ -5,11 +5,11 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
-from nrs_design.errors import SpecError
-from nrs_design.spec import load_spec, parse_spec
+from nrs_design.spec import load_spec
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec, values_at_switch
-from tests.support import FORCE_LIMIT, ROOT, replaced
+from tests.support import ROOT
 
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
 SIGNALS = {
@@ -23,10 +23,6 @@ BACK = {"from": "out", "to": "in", "command": {"above": "0.5 deg/s"}}
 def logic(*switches, **others):
     given = {"type": "thresholds", "start": "in", "signals": SIGNALS, "switches": list(switches)}
     return ThresholdLogicSpec.model_validate(given | others)
-
-
-def text(old, new):
-    return replaced(BY_SIGN.read_text(), (old, new))
 
 
 def test_the_time_between_switches_by_hand():
@@ -79,17 +75,12 @@ def test_how_far_the_signal_has_gone():
 
 def test_the_switch_of_the_thesis_may_chatter():
     """Thesis 6.3.3: force from T_th on, position when the command is negative; both may hold."""
-    text = FORCE_LIMIT.read_text() + (
-        "mode_logic:\n  type: thresholds\n  start: position\n  signals:\n"
-        "    command: {noise: 0.1 deg/s, age: 4 ms, largest_rate: 40 deg/s^2}\n"
-        "    torque: {noise: 0.002 N*m, age: 4 ms, largest_rate: 6.1 N*m/s}\n  switches:\n"
-        "    - {from: position, to: force, torque: {above: 0.3 N*m}}\n"
-        "    - {from: force, to: position, command: {below: -0.5 deg/s}}\n"
-    )
-    with pytest.raises(SpecError, match="'position' may be left as soon as it is entered"):
-        parse_spec(text)
-    mended = text.replace("above: 0.3 N*m}", "above: 0.3 N*m}, command: {above: 0.5 deg/s}")
-    assert parse_spec(mended).mode_logic.stay("force").text == "0.016 s"
-    held = parse_spec(text + "  hold: 50 ms\n").mode_logic
+    there = {"from": "position", "to": "force", "torque": {"above": "0.3 N*m"}}
+    back = {"from": "force", "to": "position", "command": {"below": "-0.5 deg/s"}}
+    with pytest.raises(ValidationError, match="'position' may be left as soon as it is entered"):
+        logic(there, back, start="position")
+    mended = logic(there | {"command": {"above": "0.5 deg/s"}}, back, start="position")
+    assert mended.stay("force").text == "0.016 s"
+    held = logic(there, back, start="position", hold="50 ms")
     assert held.stay("force").text == "50 ms"
     assert held.held_back("force") == Fraction(50, 1000)

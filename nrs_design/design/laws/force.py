@@ -28,8 +28,7 @@ from nrs_design.design.measures import FORCE_ERROR, FORCE_MEASURES, Measure
 from nrs_design.design.proved_margins import RangedLoop, ranged_loops
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.loop.cut_loop import ContinuousAxis
-from nrs_design.spec import ForceControllerSpec
-from nrs_design.spec.controllers import IntegralControllerSpec
+from nrs_design.spec.controllers import ForceControllerSpec, IntegralControllerSpec
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,8 @@ from nrs_design.robot.models.drive import build_drive
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
-from nrs_design.spec import RobotControlSpec, RobotSpec
+from nrs_design.spec import RobotSpec
+from nrs_design.spec.robot import RobotControlSpec
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,8 @@ from nrs_design.robot.models.dynamics import gravity_torque
 from nrs_design.robot.models.robot import Leg, Robot
 from nrs_design.robot.models.vectors import Array, root_mean_square
 from nrs_design.robot.models.workspace import reachable_poses, workspace_grid
-from nrs_design.spec import BalancedLegSpec, RobotSpec
+from nrs_design.spec import RobotSpec
+from nrs_design.spec.robot import BalancedLegSpec
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from nrs_design.errors import DesignError
-from nrs_design.spec import DriveSpec
+from nrs_design.spec.robot import DriveSpec
 
 # Rounded digits of the four numbers that say the same: the thesis's agree within 0.01 %, with the
 # gradient that it prints within 0.8 %.

@@ -10,7 +10,8 @@ import numpy as np
 
 from nrs_design.robot.models.body import MASSLESS, Body, rigid_body, slender_rod
 from nrs_design.robot.models.vectors import Array, Vector
-from nrs_design.spec import BodySpec, LegSpec, RobotSpec, parse_spec
+from nrs_design.spec import RobotSpec, parse_spec
+from nrs_design.spec.robot import BodySpec, LegSpec
 from nrs_design.spec.templates import TEMPLATES
 
 LEGS = ("left", "right", "middle")

@@ -12,8 +12,11 @@ from nrs_design.controllers.laws import (
     IntegralForce,
     ProportionalForce,
 )
-from nrs_design.spec import ForceControllerSpec, PositionControllerSpec
-from nrs_design.spec.controllers import IntegralControllerSpec
+from nrs_design.spec.controllers import (
+    ForceControllerSpec,
+    IntegralControllerSpec,
+    PositionControllerSpec,
+)
 
 F = Fraction
 POSITION = PositionControllerSpec(type="position")

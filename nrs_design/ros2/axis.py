@@ -35,7 +35,6 @@ BITS = 80
 class ControllerContext:
     """What the controller runs in."""
 
-    period: Fraction  # Of the control loop, in s
     # Smallest and largest age of the measured offset and force, in periods.
     delays: tuple[int, int]
     # stiffness, rotational: range of the environment for translations in N/m, and for rotations in
@@ -44,6 +43,7 @@ class ControllerContext:
     rotational: Range | None
     # Smallest and largest time constant in s with which the robot follows its command.
     lag: Range = (Fraction(0), Fraction(0))
+    period: Fraction = Fraction(0)  # Of the control loop, in s; each controller has its own
 
     @property
     def kept(self) -> Interval:

@@ -154,8 +154,9 @@ def _read(
     node: RosNode, name: str, parameter: Parameter
 ) -> tuple[tuple[Fraction, ...], list[Fault]]:
     """Return the values of a parameter, and what is wrong with it."""
+    count = parameter.count
+    wanted = "one value" if count == 1 else f"a list of {count} values"
     if name not in node.values and name in node.places:
-        wanted = _wanted(parameter)
         return (), [node.fault(name, f"expected {wanted}, found a map", f"write {wanted}")]
     if name not in node.values:
         if parameter.default is not None:
@@ -164,8 +165,7 @@ def _read(
         remedy = f"write {name} for {near[0]}" if near else f"add {name}: the controller needs it"
         return (), [node.fault(name, "is missing", remedy)]
     listed = texts(node.values[name])
-    if listed is None or len(listed) != parameter.count:
-        wanted = _wanted(parameter)
+    if listed is None or len(listed) != count:
         found = "something else" if listed is None else f"{len(listed)}"
         return (), [node.fault(name, f"expected {wanted}, found {found}", f"write {wanted}")]
     numbers, faults = [], []
@@ -173,13 +173,9 @@ def _read(
         try:
             numbers.append(_bounded(item, parameter))
         except SpecError as error:
-            at = index if parameter.count > 1 else None
+            at = index if count > 1 else None
             faults.append(node.fault(name, error.message, error.remedy or "", at))
     return tuple(numbers), faults
-
-
-def _wanted(parameter: Parameter) -> str:
-    return "one value" if parameter.count == 1 else f"a list of {parameter.count} values"
 
 
 def _bounded(item: Scalar, parameter: Parameter) -> Fraction:

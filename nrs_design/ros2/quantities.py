@@ -12,6 +12,3 @@ Range = tuple[Fraction, Fraction]
 STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
 ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
 LAG = QuantityKind("a time", ("s",), "5..20 ms")
-# Endings of a rate, which is per second without one, too.
-RATE_UNITS = (" 1/s", "Hz")
-RATE = "--rate '500 1/s'"

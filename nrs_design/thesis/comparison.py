@@ -46,7 +46,6 @@ DIGITS = 6
 # it, or nearer than one unit of its last printed digit. How far our own value may be from the
 # reference that this package has on record is another thing: the `Tolerance` of each row.
 STANDARD = 1e-3
-CUT_OFF = "Cut off in print, not rounded."
 BECAUSE = "Not reproducible, because"
 
 
@@ -199,8 +198,6 @@ def judge(row: PrintedRow, found: Found) -> ReproducedValue:
     agrees = result.holds and tolerance.allows(values, reference)
     if compared and verdict is not PrintVerdict.FITTED:
         agrees &= meets_standard(values, printed) == (verdict is PrintVerdict.REPRODUCED)
-    if agrees and verdict is PrintVerdict.REPRODUCED and _is_cut_off(values, printed):
-        note = f"{note} {CUT_OFF}".strip()
     digits = max(DIGITS, _significant_digits(text)) if compared else DIGITS
     return made(
         ", ".join(format_number(number, digits) for number in values),
@@ -223,25 +220,10 @@ def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
     )
 
 
-def _is_cut_off(values: Sequence[Number], printed: Printed) -> bool:
-    """Tell whether a print has the digits of its value, but is not rounded from it."""
-    if not _is_numeric(printed):
-        return False
-    pairs = zip(values, _numbers(printed), map(_last_digit, _texts(printed)), strict=True)
-    return any(
-        isinstance(v, float) and p and digit / 2 < abs(v) - abs(p) < digit for v, p, digit in pairs
-    )
-
-
 def _last_digit(text: str) -> float:
     """Return one unit of the last digit of a printed number, of a pair of its coarser part."""
-    return max(_unit(part) for part in text.removesuffix("j").split("+-"))
-
-
-def _unit(text: str) -> float:
-    mantissa, _, exponent = text.strip().partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return float(10.0 ** (int(exponent or 0) - decimals))
+    parts = (part.strip().partition("e") for part in text.removesuffix("j").split("+-"))
+    return max(float(f"1e{int(e or 0) - len(digits.partition('.')[2])}") for digits, _, e in parts)
 
 
 def drifted(rows: Sequence[ReproducedValue]) -> tuple[ReproducedValue, ...]:

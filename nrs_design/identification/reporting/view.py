@@ -12,7 +12,7 @@ import numpy as np
 from nrs_design import __version__
 from nrs_design.identification.numeric import Array, Flags
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Report, Section, Table
+from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.style import BLUE, INK, VERMILLION, legend, new_figure, styled
 
 if TYPE_CHECKING:
@@ -49,6 +49,20 @@ _UNUSED = "#d9b7a0"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A measured and a fitted output over time."""
+
+    title: str  # Name of the record
+    note: str  # What the fit is
+    label: str  # Quantity and unit of the output
+    # time, measured, fitted: shape (n,), time in s.
+    time: Array
+    measured: Array
+    fitted: Array
+    used: Flags | None = None  # Samples that were fitted; None for all
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class FindingView:
     """A finding in words and numbers."""
 
@@ -58,12 +72,13 @@ class FindingView:
     reason: str  # Reason of the choice, or the columns
     ranges: Mapping[str, tuple[Estimate, str]]  # The numbers and their units, by name
     facts: Facts  # Facts of this kind of identification
-    lines: Sequence[str]  # For a terminal
-    details: Sequence[str]  # Further lines with ``-v``
-    fits: Table | None  # All fits, where there are several
+    lines: Sequence[str]  # For a terminal, and for the page
     title: str  # Title of the page
     claim: str  # First sentences of the page
-    sections: Callable[[], Iterable[Section]]  # Draws the rest of the page
+    curves: Callable[[], Iterable[Curve]]
+    details: Sequence[str] = ()  # Further lines, of a terminal with ``-v``
+    fits: Table | None = None  # All fits, where there are several
+    blocks: Sequence[Block] = ()  # What a page has besides
 
     @property
     def document(self) -> Facts:
@@ -81,17 +96,28 @@ class FindingView:
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
         result = self.result
+        label = label_of(result.sources)
+        figures = tuple(
+            Illustration(f"fit-{i}", curve.title, f"{label}{curve.note}", _draw(curve))
+            for i, curve in zip(range(1, MAX_FIGURES + 1), self.curves(), strict=False)
+        )
+        fits = () if self.fits is None else (self.fits,)
         return Report(
             name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
             title=self.title,
             verdict="identified",
-            claim=f"{label_of(result.sources)}{self.claim}",
+            claim=f"{label}{self.claim}",
             remarks=(
                 *(f"Remark: {remark}." for remark in result.remarks),
                 *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
             facts=facts_of(result.sources),
-            sections=(*self.sections(), source_section(result.sources)),
+            sections=(
+                Section("What was found", (Bullets("", (*self.lines, *self.details)),)),
+                Section("Fits", (*fits, *self.blocks)),
+                Section("Measured against fitted", figures),
+                source_section(result.sources),
+            ),
             footer=_FOOTER,
         )
 
@@ -140,24 +166,19 @@ def marked(name: str, *, chosen: bool) -> str:
 
 
 @styled
-def draw_fit(
-    time: Array, measured: Array, fitted: Array, label: str, used: Flags | None = None
-) -> Figure:
-    """Draw a measured and a fitted output over time in s, and their difference below.
-
-    Samples that were not used for the fit are pale.
-    """
-    pick = thinned(len(time))
-    shown = np.ones(len(time), bool)[pick] if used is None else used[pick]
+def _draw(curve: Curve) -> Figure:
+    """Draw both outputs over time, and their difference below; unused samples are pale."""
+    pick, used = thinned(len(curve.time)), curve.used
+    shown = np.ones(len(curve.time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
-    t, data, curve = time[pick], measured[pick], fitted[pick]
+    t, data, fitted = (a[pick] for a in (curve.time, curve.measured, curve.fitted))
     upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
     if not shown.all():
         upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
-    upper.plot(t, np.where(shown, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
-    upper.set_ylabel(label)
-    lower.plot(t[shown], (data - curve)[shown], ".", color=VERMILLION, markersize=2.5)
+    upper.plot(t, np.where(shown, fitted, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.set_ylabel(curve.label)
+    lower.plot(t[shown], (data - fitted)[shown], ".", color=VERMILLION, markersize=2.5)
     lower.axhline(0.0, color=INK, linewidth=0.8)
     # Short enough for its height.
     lower.set_ylabel("Data - fitted")

@@ -10,12 +10,8 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import (
-    JOINTS,
-    ONE,
-    POSE,
     Acceleration,
     Pose,
-    Tables,
     Tilt,
     Velocity,
     print_quantities,
@@ -26,20 +22,19 @@ from nrs_design.robot.cli.options import (
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot
 
-TABLES: Tables = {
-    POSE: {"pose": "pose [rad, rad, m]"},
-    JOINTS: {
-        "velocity": "velocity [rad/s]",
-        "acceleration": "acceleration [rad/s^2]",
-        "M": ("M [kg m^2]", JOINTS),
-        "C": ("C [N m s/rad]", JOINTS),
-        "G": "G [N m]",
-        "Ms": ("Ms [kg m^2]", JOINTS),
-        "Gs": "Gs [N m]",
-        "torque": "torque [N m]",
-        "shares_by_joint": "share of the torque [1]",
-    },
-    ONE: {"base_tilt": "tilt of the base [rad]", "mean_shares": "mean share of the torque [1]"},
+_LABELS = {
+    "pose": "pose phi, psi, d [rad, rad, m]",
+    "velocity": "joint velocities [rad/s]",
+    "acceleration": "joint accelerations [rad/s^2]",
+    "M": "M [kg m^2]",
+    "C": "C [N m s/rad]",
+    "G": "G [N m]",
+    "Ms": "Ms [kg m^2]",
+    "Gs": "Gs [N m]",
+    "torque": "joint torques [N m]",
+    "shares_by_joint": "share of the torque of each joint [1]",
+    "base_tilt": "tilt of the base [rad]",
+    "mean_shares": "mean share of the torque [1]",
 }
 
 
@@ -75,7 +70,7 @@ def dynamics(
             three_numbers(acceleration or "0,0,0", "--acceleration"),
         )
     facts = loaded.facts | content
-    return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
+    return Answer(lambda: facts, lambda: print_quantities(content, _LABELS))
 
 
 def _at_pose(

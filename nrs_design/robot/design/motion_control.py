@@ -162,28 +162,24 @@ def design_load_model(spec: RobotSpec, robot: Robot) -> LoadModel:
 
 def design_computed_torque(spec: RobotSpec, load: LoadModel) -> ComputedTorque:
     """Choose the error dynamics by damping ratio and settling time (thesis 4.14 and 4.15)."""
-    control, drive = control_of(spec), build_drive(spec.drive)
-    wn = _root_locus(spec).natural_frequency
-    return ComputedTorque(
-        Kp=wn**2,
-        Kd=2 * float(control.motion_loop.damping_ratio) * wn,
-        period=control.sample_period.si,
-        encoder_ratio=drive.encoder_ratio,
-        command_per_torque=1 / drive.torque_per_command,
-        load=load,
-    )
+    wn, zeta = _root_locus(spec).natural_frequency, control_of(spec).motion_loop.damping_ratio
+    return ComputedTorque(Kp=wn**2, Kd=2 * float(zeta) * wn, load=load, **_drive_numbers(spec))
 
 
 def design_independent_joint(spec: RobotSpec, load: LoadModel | None) -> IndependentJoint:
     """Choose the PD by root locus, or take the one that the spec gives (thesis 4.30)."""
-    control, drive = control_of(spec), build_drive(spec.drive)
-    return IndependentJoint(
-        motion=_proportional_derivative(spec),
-        period=control.sample_period.si,
-        encoder_ratio=drive.encoder_ratio,
-        command_per_torque=1 / drive.torque_per_command,
-        load=load,
-    )
+    motion = _proportional_derivative(spec)
+    return IndependentJoint(motion=motion, load=load, **_drive_numbers(spec))
+
+
+def _drive_numbers(spec: RobotSpec) -> dict[str, float]:
+    """Return what both laws know of clock and drive."""
+    drive = build_drive(spec.drive)
+    return {
+        "period": control_of(spec).sample_period.si,
+        "encoder_ratio": drive.encoder_ratio,
+        "command_per_torque": 1 / drive.torque_per_command,
+    }
 
 
 def _proportional_derivative(spec: RobotSpec) -> ProportionalDerivative:

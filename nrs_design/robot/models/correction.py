@@ -8,7 +8,7 @@ theta_x, and its own y axis, so that it holds for every azimuth of that leg.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -143,34 +143,11 @@ class TiltTable:
     least_squares: Array
 
 
-def tilt_tables(
-    robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
-) -> tuple[TiltTable, ...]:
-    """Return a table for each group of motions, tilts in rad; shared motions are computed once."""
-    chosen = np.array(list(tilts), dtype=np.float64)
-    tilted = [robot.tilted(float(tilt)) for tilt in chosen]
-    fits = {
-        sine: [correction_coefficients(each, sine) for each in tilted]
-        for sine in dict.fromkeys(sine for group in groups for sine in group)
-    }
-    return tuple(
-        TiltTable(
-            chosen,
-            np.mean([[fit.mean_ratio for fit in fits[sine]] for sine in group], axis=0),
-            np.mean([[fit.least_squares for fit in fits[sine]] for sine in group], axis=0),
-        )
-        for group in groups
-    )
-
-
-def to_csv(table: TiltTable) -> str:
-    """Write a table for the controller: one line for each tilt, coefficients by mean ratio."""
-    lines = ["theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares"]
-    for tilt, ratio, squares in zip(
-        np.degrees(table.tilt), table.mean_ratio, table.least_squares, strict=True
-    ):
-        lines.append(",".join([f"{tilt:.6g}", *(f"{k:.6f}" for k in (*ratio, *squares))]))
-    return "\n".join(lines) + "\n"
+def tilt_table(robot: Robot, tilts: Array, sines: Sequence[Sine]) -> TiltTable:
+    """Return the coefficients over some motions at tilts in rad, shape (n,)."""
+    fits = [correction_coefficients(robot.tilted(float(tilt)), sines) for tilt in tilts]
+    ratios, squares = zip(*((fit.mean_ratio, fit.least_squares) for fit in fits), strict=True)
+    return TiltTable(tilts, np.array(ratios), np.array(squares))
 
 
 def thesis_tilts() -> Array:

@@ -5,7 +5,7 @@ from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import ComputedTorque, IndependentJoint
 from nrs_design.robot.models.robot import build_robot
 from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
-from nrs_design.robot.simulation.track import CONTROLLERS, build_track, experiment_tilt
+from nrs_design.robot.simulation.track import CONTROLLERS, build_tracks, experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
@@ -14,7 +14,7 @@ UNBALANCED = TEXT[: TEXT.index("# Thesis 4.4 and its")]
 
 
 def test_three_controllers_of_the_thesis(spec, tilted):
-    torque, joint, balanced = (build_track(spec, tilted, name) for name in CONTROLLERS)
+    torque, joint, balanced = (build_tracks(spec, tilted, name)[0] for name in CONTROLLERS)
     assert isinstance(torque.law, ComputedTorque)
     assert isinstance(joint.law, IndependentJoint)
     assert joint.law.load is not None
@@ -31,13 +31,6 @@ def test_three_controllers_of_the_thesis(spec, tilted):
     assert {t.encoder.counts for t in (torque, joint, balanced)} == {8192}
 
 
-def test_experiments_one_by_one(spec, tilted):
-    track = build_track(spec, tilted, "computed-torque")
-    assert [one.experiments[0].moved for one in track.split()] == ["d", "phi", "psi"]
-    assert [one.moved for one in track.only("psi").experiments] == ["psi"]
-    assert track.only(None).experiments == track.experiments
-
-
 def test_tilt_of_the_experiments(spec):
     # Thesis 4.2 and 4.4: -28.5 deg.
     assert experiment_tilt(spec) == pytest.approx(-0.497419, abs=1e-6)
@@ -47,7 +40,7 @@ def test_tilt_of_the_experiments(spec):
 def test_a_robot_without_balance_has_no_balanced_controller():
     spec = parse_spec(UNBALANCED)
     with pytest.raises(DesignError, match="no `balance`"):
-        build_track(spec, build_robot(spec), "balanced")
+        build_tracks(spec, build_robot(spec), "balanced")
 
 
 ERROR = np.array([[0.01, 0.0, 1e-3], [-0.01, 0.02, -1e-3]])

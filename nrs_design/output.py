@@ -43,7 +43,6 @@ RESPONSE = re.compile(
 )
 SWEEP = b"point,exit_code,message,"
 SWEEP_ANSWERS = b'{"schema": "nrs-design/answers/1"}'
-TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Other programs write SARIF and JUnit files, too: ours say that they are.
 GATE = re.compile(
     rb"spec +verdict +common quadratic +decay rate +modes +certificate\n"

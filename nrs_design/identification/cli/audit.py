@@ -32,14 +32,6 @@ def audit(
         Path | None,
         typer.Option(metavar="CERT", help="Certificate of that spec; without it, none is proved."),
     ] = None,
-    command_limit: Annotated[
-        str | None,
-        typer.Option(
-            metavar="QUANTITY",
-            help="Where the driver saturates, such as '24 V', or a number as logged; default: "
-            "`limits: command` of the spec.",
-        ),
-    ] = None,
     columns: ColumnMap = None,
     report: ReportTo = None,
     date: Date = None,
@@ -56,11 +48,7 @@ def audit(
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
     from nrs_design.identification.reporting.running import run_facts, run_report
-    from nrs_design.identification.running.bounds import (
-        parse_command_limit,
-        proof_of,
-        read_run_bounds,
-    )
+    from nrs_design.identification.running.bounds import proof_of, read_run_bounds
     from nrs_design.identification.running.judge import judge_run
     from nrs_design.identification.running.log import read_run
     from nrs_design.identification.write_spec import check_turning
@@ -70,11 +58,10 @@ def audit(
     loaded = read_spec(spec)
     check_turning(loaded.spec, loaded.path)
     bounds = read_run_bounds(loaded)
-    limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
     reason, losable = proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [])
     with progress("judging"):
-        judgement = judge_run(run, bounds, proved=not reason, losable=losable, command_limit=limit)
+        judgement = judge_run(run, bounds, proved=not reason, losable=losable)
     return outputs.deliver(
         Answer(
             lambda: run_facts(judgement, loaded, certificate, reason),

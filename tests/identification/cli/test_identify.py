@@ -137,13 +137,15 @@ def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
     arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
-    kept = run(*arguments, "-q", cwd=tmp_path, code=0)
+    kept = run(*arguments, "-q", cwd=tmp_path, code=3)
     assert kept.stderr.startswith(
         "warning: stiffness: the range from 1 record is 27.8 times narrow"
     )
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
-    kept = run(*arguments, cwd=tmp_path, code=0)
+    kept = run(*arguments, cwd=tmp_path, code=3)
     assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
+    assert "the gate fails on its doubts until accept_doubt says why" in kept.stderr
+    assert "NRS107 missed" in run("gate", spec, "--no-reports", cwd=tmp_path, code=1).stdout
     assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
     assert "no longer there" not in kept.stderr
     soft = read_spec(spec).spec.environments["soft"]

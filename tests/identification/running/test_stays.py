@@ -87,7 +87,7 @@ def test_missing_rows_may_hide_switches(tmp_path, rules, cut, status):
 
 def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
     rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
-    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    found = judged(log(tmp_path), with_switching(tmp_path, rules))
     stays = check(found, "dwell times")
     assert stays.status == "not judged"
     assert "name contacts" in stays.measured

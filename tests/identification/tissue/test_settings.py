@@ -3,8 +3,8 @@
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.tissue.settings import parse_arm, read_preparation
-from nrs_design.identification.tissue.trial import Preparation
+from nrs_design.identification.cli.identify import parse_arm
+from nrs_design.identification.tissue.trial import Preparation, read_preparation
 from nrs_design.models.contact import Elastic
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from nrs_design.api.result import AbstractResult, Figures, drawn
-
-if TYPE_CHECKING:
-    from nrs_design.reporting import Report
+from nrs_design.api.result import AbstractResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +43,6 @@ class Audit(AbstractResult):
         Whether a simulation made the log.
     facts : mapping
         What the command prints by ``--json``.
-    page : callable
-        Draws its page.
     """
 
     name: str
@@ -57,13 +52,9 @@ class Audit(AbstractResult):
     first: AuditCheck | None
     synthetic: bool
     facts: Mapping[str, Any]
-    page: Callable[[], Report]
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
-
-    def _drawings(self) -> Figures:
-        return drawn(self.page().sections)
 
     def _headline(self) -> str:
         made = ", SYNTHETIC data" if self.synthetic else ""

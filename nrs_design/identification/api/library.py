@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ from nrs_design.identification.datasets.records import read_actuator, read_signa
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.reporting.actuator import view_actuator
 from nrs_design.identification.reporting.delay import view_delay
-from nrs_design.identification.reporting.running import run_facts, run_report
+from nrs_design.identification.reporting.running import run_facts
 from nrs_design.identification.reporting.tissue import view_tissue
 from nrs_design.identification.reporting.view import FindingView, is_synthetic
 from nrs_design.identification.running.bounds import Check, proof_of, read_run_bounds
@@ -118,7 +117,6 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
         first=None if result.first is None else checks[id(result.first)],
         synthetic=result.log.source.synthetic,
         facts=run_facts(result, loaded, certificate, reason),
-        page=partial(run_report, result, loaded.spec.name, reason),
     )
 
 

@@ -23,8 +23,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.ros2.law import AdmittanceLaw, Axis
-from nrs_design.ros2.quantities import Range
+from nrs_design.ros2.law import AdmittanceLaw, Axis, Range
 
 ONE = Fraction(1)
 # Digits in base two behind the point of a square root that is not rational.

@@ -15,10 +15,18 @@ from nrs_design.proof.bounds import nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
-from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.law import (
+    LAW,
+    ROTATIONAL,
+    STIFFNESS,
+    AdmittanceLaw,
+    Axis,
+    Range,
+    is_admittance,
+    read_law,
+)
 from nrs_design.ros2.managers import MANAGER, find_undecided, kind_of, managers_of
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
-from nrs_design.ros2.quantities import ROTATIONAL, STIFFNESS, Range
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify

@@ -24,9 +24,8 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
-from nrs_design.ros2.law import AXES, AdmittanceLaw, read_law
+from nrs_design.ros2.law import AXES, AdmittanceLaw, Range, read_law
 from nrs_design.ros2.parameters import parse_nodes
-from nrs_design.ros2.quantities import Range
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.sampling import SamplingSpec

@@ -15,7 +15,14 @@ from types import MappingProxyType
 from nrs_design.errors import Fault, SpecError
 from nrs_design.ros2.parameters import RosNode, read_bool, read_double, read_integer, texts
 from nrs_design.spec.document import Position, Scalar
+from nrs_design.spec.quantity import QuantityKind
 
+Range = tuple[Fraction, Fraction]  # Both ends
+
+# What is asked about a robot, each with an example, which its option takes as it stands.
+STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
+ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
+LAG = QuantityKind("a time", ("s",), "5..20 ms")
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 TYPE = "admittance_controller/AdmittanceController"
 FILTER = "ft_sensor.filter_coefficient"

@@ -10,6 +10,7 @@ from nrs_design.ros2.axis import ControllerContext
 from nrs_design.ros2.check import check_file
 from nrs_design.search.certification import Limits
 from tests.ros2.support import EXAMPLE, changed
+from tests.tables import rows
 
 SOFT = (Fraction(200), Fraction(2000))
 
@@ -31,11 +32,7 @@ def test_what_is_too_stiff_is_refuted():
 
 @pytest.mark.parametrize(
     "more",
-    [
-        "/**:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
-        "/**/admittance_controller:\n  ros__parameters: {admittance: {joint_damping: 0.0}}\n",
-        "/admittance_controller:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
-    ],
+    rows(__file__, "test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over"),
     ids=["all nodes", "any namespace", "the same name"],
 )
 def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path, more):

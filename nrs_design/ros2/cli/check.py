@@ -15,7 +15,7 @@ from nrs_design.cli.gate import GateFormat, format_of
 from nrs_design.cli.options import read_work
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_text
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.ros2.quantities import LAG, ROTATIONAL, STIFFNESS, Range
+from nrs_design.ros2.law import LAG, ROTATIONAL, STIFFNESS, Range
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from nrs_design.spec import read_spec
 from tests.identification import signals
 from tests.identification.support import NOSE, SINUSOIDS, SOFT, quick, record, write_csv
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, document_of, run
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
@@ -73,16 +74,7 @@ def test_a_doubt_is_no_success(tmp_path):
     assert "warning: used comes 6.23 samples before raw" in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["loop.csv", "--command", "raw"], "Missing option"),
-        (["loop.csv", "--command", "raw", "--measured", "usd"], "there is no column 'usd' to map"),
-        (["loop.csv", "--command", "raw", "--measured", "raw"], "name two columns"),
-        (["loop.csv", "--command", "time_s", "--measured", "raw"], "the column of --command"),
-        (["none.csv", "--command", "raw", "--measured", "used"], "cannot be read"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "message"), rows(__file__, "test_wrong_delays"))
 def test_wrong_delays(tmp_path, arguments, message):
     (tmp_path / "loop.csv").write_text("time_s,raw,used\n" + "0,1,2\n" * 60)
     done = run("identify", "delay", *arguments, cwd=tmp_path, code=2)
@@ -217,14 +209,6 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
         assert any(said in doubt for doubt in read_spec(spec).spec.environments["soft"].doubts)
 
 
-@pytest.mark.parametrize(
-    ("option", "message"),
-    [
-        (("--set", "start=99"), "lie between start and end"),
-        (("--covers", "tolerance"), "needs several records"),
-        (("--environment", "soft"), "name a spec by --write, too"),
-        (("--preload", "1 N"), "--preload: "),
-    ],
-)
+@pytest.mark.parametrize(("option", "message"), rows(__file__, "test_wrong_options_of_tissue"))
 def test_wrong_options_of_tissue(tmp_path, option, message):
     assert message in run("identify", "tissue", SOFT[0], *option, cwd=tmp_path, code=2).stderr

@@ -16,6 +16,7 @@ from nrs_design.models.contact import (
 )
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow, source
+from tests.tables import rows
 
 
 def doubts(kind, law, motion, noise=0.01, resolution=0.0):
@@ -45,15 +46,7 @@ def test_what_a_record_does_not_determine(kind, law, motion, noise, said):
     assert bool(text) == bool(said)
 
 
-@pytest.mark.parametrize(
-    ("times", "said"),
-    [
-        ((1, 1e3), "spans 6.91 m: is that its unit?"),
-        ((1, 1e-3), "e-06 m: is that its unit?"),
-        ((1e3, 1), "the steps of time are 10 s: is that their unit?"),
-        ((1e-3, 1), "1e-05 s: is that their unit?"),
-    ],
-)
+@pytest.mark.parametrize(("times", "said"), rows(__file__, "test_another_unit_is_suspected"))
 def test_another_unit_is_suspected(times, said):
     motion = quick()
     made = Motion(times[0] * motion.time, times[1] * motion.deflection)

@@ -68,13 +68,11 @@ def identify_records(
 
 def _check(files: Sequence[object], kind: object, law: str | None) -> None:
     """Refuse unknown kinds and laws, and swapped arguments."""
-    kinds = tuple(_KINDS)
-    if kind not in kinds:
-        if any(isinstance(file, str) and file in kinds for file in files):
-            raise DataError(
-                "the arguments are swapped", remedy="the records come first: identify(files, kind)"
-            )
-        raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(kinds)}")
+    if kind not in _KINDS:
+        if any(isinstance(file, str) and file in _KINDS for file in files):
+            remedy = "the records come first: identify(files, kind)"
+            raise DataError("the arguments are swapped", remedy=remedy)
+        raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(_KINDS)}")
     if law is not None and kind != "tissue":
         raise DataError(f"records of kind {kind} have no law", remedy="leave law out")
     if law is not None and law not in LAWS:
@@ -87,16 +85,15 @@ def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> Finding
     return view_tissue(identify_tissue([read_tissue(file, mapping) for file in files], law))
 
 
-def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
+def _actuator(files: Sequence[Data], mapping: Columns, law: None) -> FindingView:
     return view_actuator(identify_actuator([read_actuator(file, mapping) for file in files]))
 
 
-def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
-    (file,) = files
-    return view_delay(identify_delay(read_signals(file, mapping)))
+def _delay(files: Sequence[Data], mapping: Columns, law: None) -> FindingView:
+    return view_delay(identify_delay(read_signals(files[0], mapping)))
 
 
-_KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], FindingView]] = {
+_KINDS: Mapping[str, Callable[..., FindingView]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,

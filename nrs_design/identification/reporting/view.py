@@ -41,7 +41,6 @@ SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 # Records of which figures are drawn.
 MAX_FIGURES = 6
 _FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
-_FILES = "Data files"
 # Most points of a curve on a page.
 _POINTS = 1500
 _MEASURED = "#7d8894"
@@ -95,8 +94,15 @@ class FindingView:
 
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
-        result = self.result
-        label = label_of(result.sources)
+        result, sources = self.result, self.result.sources
+        synthetic = sum(source.synthetic for source in sources)
+        kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
+        # What must stand before anything that comes of synthetic data.
+        label = "SYNTHETIC DATA, made by a simulation and not measured. " * bool(synthetic)
+        files = tuple(
+            (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
+            for source in sources
+        )
         figures = tuple(
             Illustration(f"fit-{i}", curve.title, f"{label}{curve.note}", _draw(curve))
             for i, curve in zip(range(1, MAX_FIGURES + 1), self.curves(), strict=False)
@@ -111,34 +117,18 @@ class FindingView:
                 *(f"Remark: {remark}." for remark in result.remarks),
                 *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
-            facts=facts_of(result.sources),
+            facts=(
+                ("Data", f"{kind}, {counted(len(sources), 'file')}"),
+                ("Package", f"nrs-design {__version__}"),
+            ),
             sections=(
                 Section("What was found", (Bullets("", (*self.lines, *self.details)),)),
                 Section("Fits", (*fits, *self.blocks)),
                 Section("Measured against fitted", figures),
-                source_section(result.sources),
+                Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), files),)),
             ),
             footer=_FOOTER,
         )
-
-
-def facts_of(sources: Sequence[Source]) -> tuple[tuple[str, str], ...]:
-    """Return what stands at the head of a page about data."""
-    synthetic = sum(source.synthetic for source in sources)
-    kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
-    return (
-        ("Data", f"{kind}, {counted(len(sources), 'file')}"),
-        ("Package", f"nrs-design {__version__}"),
-    )
-
-
-def source_section(sources: Iterable[Source]) -> Section:
-    """Return the section that names the files."""
-    rows = tuple(
-        (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
-        for source in sources
-    )
-    return Section(_FILES, (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
 def source_facts(files: Iterable[Source]) -> list[Facts]:
@@ -147,11 +137,6 @@ def source_facts(files: Iterable[Source]) -> list[Facts]:
         {"file": str(file.path), "sha256": file.sha256, "synthetic": file.synthetic}
         for file in files
     ]
-
-
-def label_of(sources: Sequence[Source]) -> str:
-    """Return what must stand before anything that comes of synthetic data."""
-    return "SYNTHETIC DATA, made by a simulation and not measured. " * is_synthetic(sources)
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
@@ -168,7 +153,7 @@ def marked(name: str, *, chosen: bool) -> str:
 @styled
 def _draw(curve: Curve) -> Figure:
     """Draw both outputs over time, and their difference below; unused samples are pale."""
-    pick, used = thinned(len(curve.time)), curve.used
+    pick, used = slice(None, None, max(1, -(-len(curve.time) // _POINTS))), curve.used
     shown = np.ones(len(curve.time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
@@ -185,8 +170,3 @@ def _draw(curve: Curve) -> Figure:
     lower.set_xlabel("Time [s]")
     legend(figure, upper)
     return figure
-
-
-def thinned(count: int) -> slice:
-    """Return which of many points are drawn."""
-    return slice(None, None, max(1, -(-count // _POINTS)))

@@ -32,11 +32,13 @@ Tilt = Annotated[
     typer.Option("--tilt", metavar="DEG", help="Tilt of the base in degrees, not the spec's."),
 ]
 
+Three = tuple[float, float, float]
+
 # So many times the depth of the workspace, and another unit is meant.
 DOUBTFUL = 10
 
 
-def three_numbers(text: str, option: str) -> tuple[float, float, float]:
+def three_numbers(text: str, option: str) -> Three:
     """Read ``1,2,3``."""
     try:
         numbers = [float(part) for part in text.split(",")]
@@ -50,7 +52,7 @@ def three_numbers(text: str, option: str) -> tuple[float, float, float]:
     return numbers[0], numbers[1], numbers[2]
 
 
-def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
+def read_pose(text: str, robot: Robot) -> Three:
     """Read a pose, and doubt one that is in other units than rad and m."""
     phi, psi, d = three_numbers(text, "--pose")
     for name, angle in (("phi", phi), ("psi", psi)):

@@ -59,10 +59,9 @@ def thesis_experiments(
 ) -> tuple[Experiment, Experiment, Experiment]:
     """Return the experiments on one controller, scaled to the robot's workspace.
 
-    With the workspace of the NeuRoboScope they are those of the thesis, if no period in s is given:
-    d moves over its whole range at phi = psi = 0; phi and psi move by their largest values at the
-    smallest d, or at the middle one for the balanced robot, which also moves slowly. The
-    independent joints were tested with the slow motion of d too (4.33c).
+    With that of the NeuRoboScope, and no period in s, they are those of the thesis: d moves over
+    its whole range at phi = psi = 0; phi and psi move by their largest values at the smallest d, or
+    at the middle one for the balanced robot, which is slow, as independent joints are in d (4.33c).
     """
     space, balanced = robot.workspace, controller == "balanced"
     low, high = space.d

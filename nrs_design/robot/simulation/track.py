@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 
 from nrs_design.robot.design.motion_control import (
-    MotionLaw,
+    AbstractMotionLaw,
     design_computed_torque,
     design_independent_joint,
     design_load_model,
@@ -45,7 +45,7 @@ class Track:
     """A controller on a robot, and the experiment that it does."""
 
     controller: str  # Name for people
-    law: MotionLaw  # The controller
+    law: AbstractMotionLaw  # The controller
     mechanism: Mechanism  # What it moves
     drive: JointDrive  # Behind each joint
     encoder: Encoder  # On each drive
@@ -77,7 +77,7 @@ def build_tracks(
 
 def _mechanism_and_law(
     spec: RobotSpec, robot: Robot, controller: str
-) -> tuple[Mechanism, MotionLaw]:
+) -> tuple[Mechanism, AbstractMotionLaw]:
     if controller == "balanced":
         balance = design_balance(spec, robot)
         mechanism = Mechanism(balanced_robot(robot, balance), balance)

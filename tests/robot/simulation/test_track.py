@@ -1,11 +1,18 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import ComputedTorque, IndependentJoint
 from nrs_design.robot.models.robot import build_robot
 from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
-from nrs_design.robot.simulation.track import CONTROLLERS, build_tracks, experiment_tilt
+from nrs_design.robot.simulation.track import (
+    CONTROLLERS,
+    Encoder,
+    build_tracks,
+    experiment_tilt,
+)
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
@@ -68,3 +75,16 @@ def test_summary_in_the_units_of_the_print(record):
     assert summary["rmse"] == pytest.approx([np.degrees(0.01), np.degrees(0.02 / 2**0.5), 1.0])
     assert summary["actual_rmse"] == pytest.approx([2 * error for error in summary["rmse"]])
     assert summary["largest_command"] == [3, 5, 2]
+
+
+ENCODER = Encoder(5.0, 8192)
+angles = st.lists(st.floats(-2, 2), min_size=3, max_size=3).map(np.array)
+
+
+@given(joints=angles)
+def test_rounds_to_the_nearest_count(joints):
+    count = 2 * np.pi / 8192
+    read = ENCODER.read(joints)
+    assert np.all(np.abs(read - 5 * joints) <= count / 2 * (1 + 1e-9))
+    assert read / count == pytest.approx(np.round(read / count), abs=1e-9)
+    assert np.array_equal(ENCODER.read(read / 5), read)

@@ -32,7 +32,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.document import Position
 
-# The worst first: what a file is called where its axes differ.
+# The verdict on a file is the worst of its axes; the worst comes first.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
 
 
@@ -46,7 +46,7 @@ class _Asker:
     known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
     def obligation(self, law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Obligation:
-        """Return what holds for one axis."""
+        """Return the verdict on one axis."""
         name, met = f"{law.node.name}: axis {axis.name}", around.of(axis)
         if axis.selected and law.force_from is not None:
             words = f"its force comes through {law.force_from}, another controller: not modelled"
@@ -134,7 +134,7 @@ def _controllers(nodes: Collection[RosNode], path: Path) -> list[RosNode]:
     """Return the admittance controllers of a file, of which there must be one."""
     others = (node for node in nodes if node.base_name != MANAGER)
     found = [node for node in others if is_admittance(node, kind_of(node, nodes))]
-    # What stands at a wildcard is said of the controllers that it means: no controller of its own.
+    # A wildcard sets parameters of the controllers that match it, and is no controller itself.
     found = [node for node in found if not any(map(node.stands_for, found))]
     if not found:
         names = ", ".join(node.name for node in nodes)
@@ -149,7 +149,7 @@ def _controllers(nodes: Collection[RosNode], path: Path) -> list[RosNode]:
 def _read(
     node: RosNode, manager: RosNode | None, nodes: Collection[RosNode], names: Collection[str]
 ) -> tuple[AdmittanceLaw | None, Sequence[Fault]]:
-    """Return the law of a controller, or what keeps it, or its rate, from being read."""
+    """Return the law of a controller, or the faults of its parameters and rate."""
     beside = [other for other in nodes if other.base_name != MANAGER]
     if shared := _shared(node, beside, LAW):
         return None, shared
@@ -162,7 +162,7 @@ def _read(
 
 
 def _shared(node: RosNode, nodes: Iterable[RosNode], names: Collection[str]) -> list[Fault]:
-    """Return what another node may say of a node, too, of some names."""
+    """Return a fault for each of some parameters that another node may set, too."""
     return [
         other.fault(
             name,
@@ -225,7 +225,7 @@ def _refusal(path: Path, place: Position, message: str, remedy: str) -> SpecErro
 
 
 def _rate_note(law: AdmittanceLaw, manager: RosNode | None, rate: Fraction) -> str:
-    """Say where the rate comes from: what is not in the file is not seen."""
+    """Name the source of the rate: only this file is read."""
     assert manager is not None  # _rate
     line = manager.place("update_rate").line
     said = f"{law.node.name} runs {nearly(rate)} times per second, as "

@@ -32,7 +32,7 @@ from nrs_design.spec.sampling import SamplingSpec
 
 BEGINNING = b"# nrs-design ros2 of "
 SEVERITY = ("proved", "inconclusive", "refuted")
-# What the controller needs besides, which no design knows.
+# Further parameters of the controller, which no design knows.
 BESIDE = (
     "joints (at least six: fewer couple the axes), command_interfaces, state_interfaces, "
     "chainable_command_interfaces, kinematics, ft_sensor.name, frames, gravity_compensation"
@@ -41,12 +41,12 @@ BESIDE = (
 
 @dataclass(frozen=True, slots=True)
 class RosExport:
-    """One controller as a parameter file, or why there is none."""
+    """One controller with its verdict, and as a parameter file if the verdict is a proof."""
 
     controller: str  # Its name in the spec
     verdict: str  # Under the law that ROS 2 computes with these parameters
     text: str  # The file; empty without a proof
-    certificate: Certificate | None  # Its modes, and what is shown of them
+    certificate: Certificate | None  # Modes and proof
 
 
 def export_controllers(
@@ -129,7 +129,7 @@ def _sampling(designed: Designed) -> SamplingSpec:
 
 
 def _with_contact(designed: Designed, system: SwitchedSystem) -> SwitchedSystem:
-    """Ask for a proof through any loss of contact where the spec does."""
+    """Require a proof through any loss of contact where the spec does."""
     if designed.spec.contact != "losable":
         return system
     if system.contact is None:
@@ -175,7 +175,7 @@ def _body(axis: str, controller: Controller, share: Fraction, sampling: Sampling
         "selected_axes": ["true" if name == axis else "false" for name in AXES],
         # The mass of an axis that is not selected has no effect.
         "mass": [_double(Mt)] * len(AXES),
-        # Without stiffness it has no effect; anything else would look as if it had.
+        # Without stiffness the ratio has no effect, so the file shows 0.
         "damping_ratio": ["0.0"] * len(AXES),
         "stiffness": ["0.0"] * len(AXES),
     }
@@ -224,7 +224,7 @@ def _header(name: str, spec: str, sampling: SamplingSpec, about: Sequence[str]) 
 
 
 def _about(axis: str, designed: Designed, met: Range, certificate: Certificate) -> Iterator[str]:
-    """Yield what is proved of one axis."""
+    """Yield the proof of one axis in words."""
     evidence, spec = certificate.evidence, designed.spec
     assert evidence is not None, "proved by something"
     unit = spec.axis.unit

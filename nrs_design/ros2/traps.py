@@ -1,4 +1,4 @@
-"""What about the parameters surprises people, though the controller starts with them."""
+"""Doubtful parameters with which the controller starts."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from nrs_design.gating.obligations import Caution
 from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
 from nrs_design.ros2.parameters import RosNode, texts
 
-# The default share of the new sample, and all that smooth the force as long.
+# Default share of the new sample; smaller shares smooth the force longer.
 SLOW = Fraction(1, 20)
 RETUNING = "enable_parameter_update_without_reactivation"
-# A parameter, the item of its list that is meant, and what is doubtful about it.
+# Name of a parameter, index in its list, and the doubt.
 Trap = tuple[str, int | None, str]
 
 

@@ -55,7 +55,7 @@ def _generalized_coordinates() -> bool:
     energies = (float(potential_energy(robot(), pose)) for pose in (ahead, behind))
     power = (next(energies) - next(energies)) / (2 * _STEP)
     rates = (inverse_kinematics(robot(), ahead) - inverse_kinematics(robot(), behind)) / 2 / _STEP
-    # The rates of the print's q_a would be those of the rates: zero, where these are constant.
+    # With the printed q_a the power would be zero at constant rates.
     return abs(power) > 0.1 and math.isclose(
         float(gravity_torque(robot(), _POSE) @ rates), power, rel_tol=1e-6
     )
@@ -130,7 +130,7 @@ def _decay() -> bool:
 
 def _update() -> bool:
     A = np.array(impedance_rows(thesis.SOFT, "0.01", "2.15", "force"), dtype=float)
-    # Half of what 5.21 asks for: the print makes no update here, though 5.21 does not hold.
+    # Half of the Q of 5.21: the printed rule makes no update here, though 5.21 does not hold.
     Q = own_norms(A[None], Time.CONTINUOUS)[0] / 2
     v = float(np.linalg.eigvalsh(A.T @ Q + Q @ A + np.eye(4))[-1])
     return 0 < v < 1

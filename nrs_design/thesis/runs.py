@@ -109,7 +109,7 @@ def simulated_runs() -> Iterator[Found]:
     for speed in (5, 3):
         times = [_withdrawal(speed, control) for control in ("{fixed: insertion}", BY_SIGN)]
         gain = 100 * metrics.gain_in_time(*times)
-        # In so many s the deflection by the largest torque is passed.
+        # Time in s to pass the deflection under the largest torque.
         away = math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
         yield Recomputed((*times, gain), gain > 0, (f"{away:.2f}",))
     yield _limited(PROPORTIONAL)
@@ -153,7 +153,7 @@ def _limited(force: str, more: str = "") -> tuple[float, float]:
     inside = run.response.t >= begin
     t, torque = run.response.t[inside], run.response["torque"][inside]
     peak = thesis.TORQUE * (1 + metrics.overshoot(torque, thesis.TORQUE))
-    # What is left of a decay after the run, or of its arithmetic, is no steady error.
+    # The rest of a decay, and rounding, are no steady error.
     return peak, round(100 * metrics.steady_state_error(t, torque, thesis.TORQUE), 6)
 
 
@@ -191,7 +191,7 @@ class HandRun:
     """What one move shows, until the way is made."""
 
     time: float  # How long the way takes, s
-    effort: Effort  # Of the hand
+    effort: Effort  # Effort of the hand
     last: float  # Velocity of the admittance at the end, rad/s
 
 
@@ -206,7 +206,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     motion = realize(thesis.CLOSED_LOOP)
     Ap, C = np.array(motion.A, float), np.array(motion.C, float)
     n = len(C)
-    # After those of the motion loop: velocity of the admittance, angle, way of the hand, one.
+    # States after the motion loop: velocity of the admittance, angle, way of the hand, one.
     velocity, angle, hand, one = range(n, n + 4)
     F, A = np.zeros(n + 4), np.zeros((n + 4, n + 4))
     if stiffness is None:
@@ -230,7 +230,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
 
 
 def changes(values: list[float]) -> tuple[float, ...]:
-    """Return by how much each pair of `PAIRS` differs, in % of the first."""
+    """Return the difference of each pair of `PAIRS`, in % of the first."""
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 

@@ -1,4 +1,4 @@
-"""The whole table: what is computed for each topic of `rows.yaml`, and the table as a page."""
+"""Table of all topics of `rows.yaml`, and its page."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CONVERTED = (
 )
 
 
-# What computes the results of each topic.
+# Function that computes the results of each topic.
 TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
     "formulas": formulas.formulas,
     "tissue": materials.tissue,

@@ -1,4 +1,4 @@
-"""Options that several robot commands share, and what they do with them."""
+"""Shared options of the robot commands, and their parsers."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Tilt = Annotated[
 
 Three = tuple[float, float, float]
 
-# So many times the depth of the workspace, and another unit is meant.
+# A depth beyond this multiple of the workspace is taken for another unit.
 DOUBTFUL = 10
 
 

@@ -126,7 +126,7 @@ class IndependentJoint(AbstractMotionLaw):
 
     # Gains in rpm/rad and rpm s/rad, as on the robot in single precision.
     motion: ProportionalDerivative
-    # Where the weight comes from. None feeds nothing forward, for the balanced robot (4.36).
+    # Source of the weight; None without feedforward, for the balanced robot (4.36).
     load: LoadModel | None
 
     def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
@@ -173,7 +173,7 @@ def design_independent_joint(spec: RobotSpec, load: LoadModel | None) -> Indepen
 
 
 def _drive_numbers(spec: RobotSpec) -> dict[str, float]:
-    """Return what both laws know of clock and drive."""
+    """Return sample period and drive constants of both laws."""
     drive = build_drive(spec.drive)
     return {
         "period": control_of(spec).sample_period.si,

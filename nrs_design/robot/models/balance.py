@@ -35,7 +35,7 @@ class LegBalance:
     coupler_distance: float
     total_mass: float  # M_a, everything that the spring holds, in kg. It is no counter-mass.
     total_distance: float  # B_a, its center of mass on the crank from the base joint, in m
-    stiffness: float  # Of the spring, in N/m
+    stiffness: float  # Stiffness of the spring in N/m
     # spring_on_crank, spring_on_base: its ends from the base joint, A0C_A and A0D0, in m.
     spring_on_crank: float
     spring_on_base: float
@@ -116,7 +116,7 @@ def _sprung(leg: Leg, spring: LegBalance) -> Leg:
 
 
 def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
-    """Return what the motors still have to hold in a balanced robot, shape (..., 3), in N m.
+    """Return the residual static torques of a balanced robot, shape (..., 3), in N m.
 
     The robot is the one without counter-masses. Weights that the balance does not know of remain:
     the middle leg, the offset of the platform, and its mass less the two payloads.

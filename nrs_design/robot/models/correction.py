@@ -96,9 +96,9 @@ DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
 TABLE_3_5 = tuple(
     Sine(phi, psi, d) for d in DEPTHS for phi in (0.0, 0.1205) for psi in (0.0, 0.2043)
 )
-# Its last row: the whole workspace.
+# Last row of the table: the whole workspace.
 WHOLE_WORKSPACE = Sine(0.2618, 0.3491, (0.150, 0.250))
-# What the tilts are compared on: the depth moves, the angles are zero.
+# Motions for the comparison of tilts: the depth moves, the angles are zero.
 DEPTH_SINES = tuple(Sine(0.0, 0.0, d) for d in DEPTHS)
 
 
@@ -128,7 +128,7 @@ def correct(*torques: tuple[Array, Array]) -> Correction:
 
 
 def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
-    """Return the coefficients over one or several trajectories; of several, their means."""
+    """Return the coefficients over one trajectory, or their means over several."""
     chosen = (sines,) if isinstance(sines, Sine) else sines
     return correct(*(_torques(robot, sine) for sine in chosen))
 

@@ -28,7 +28,7 @@ class JointDrive:
 
     # Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
     encoder_ratio: Scalar
-    inertia: Scalar  # Of the rotor, ``N^2 I_r`` in kg m^2
+    inertia: Scalar  # Inertia of the rotor at the joint, ``N^2 I_r`` in kg m^2
     damping: Scalar  # ``N^2/(K gradient)`` in N m s/rad
     torque_per_command: Scalar  # ``N/gradient`` in N m/rpm
     friction: Scalar  # Largest dry friction at the joint in N m

@@ -1,4 +1,4 @@
-"""Closing the loops: where every link of the robot is at a pose, and whether it can be there.
+"""Closed loops: position of every link at a pose, and reach.
 
 Each leg is a slider-crank in a plane that is spanned by its base axis ``a`` and the endoscope
 ``W`` (thesis fig. 3.3 and 3.4). In that plane angles count from ``a`` towards ``W``: beta of the
@@ -50,7 +50,7 @@ class LegPosture:
 
 @dataclass(frozen=True, slots=True)
 class Posture:
-    """The whole robot at a pose, or at each pose of a batch."""
+    """Posture of the robot at a pose, or at each pose of a batch."""
 
     W: Vector  # Direction of the endoscope in the base frame (thesis 3.3)
     d: Scalar  # Depth in m
@@ -140,7 +140,7 @@ def reach(robot: Robot, pose: ArrayLike) -> Array:
 
 
 def reach_margin(robot: Robot, pose: ArrayLike) -> Array:
-    """Return by how much in m every leg is inside its reach, shape (..., 3); zero is singular.
+    """Return the margin of every leg to its reach in m, shape (..., 3); zero is singular.
 
     The smaller of the distances from stretched and from folded, negative where the leg would have
     to be overstretched or folded beyond its limit.

@@ -87,7 +87,7 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
             excess=lack,
             remedy="check the joint angles, in rad",
         )
-    # Whether the coupler points along the endoscope or against it.
+    # Direction of the coupler: along the endoscope, or against the endoscope.
     sign = np.sign(_coupler_along(posture(robot, robot.home).legs[2]))
     return along + sign * np.sqrt(square)
 

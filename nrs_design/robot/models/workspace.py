@@ -57,7 +57,7 @@ def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class WorkspaceSurvey:
-    """What the robot can do of the workspace that its spec names."""
+    """Reach of the robot over the workspace of its spec."""
 
     reachable: float  # Share of the grid's poses that all legs reach, between 0 and 1
     # joint_low, joint_high: range of each joint over the reachable poses in rad, shape (3,).
@@ -69,7 +69,7 @@ class WorkspaceSurvey:
     # (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None where
     # no depth of the range is reachable.
     deepest: tuple[tuple[float, float, float | None], ...]
-    # What keeps the robot from the farthest pose of the grid; None if all are reachable.
+    # Obstacle at the farthest pose of the grid; None if all poses are reachable.
     obstacle: PoseError | None
 
 

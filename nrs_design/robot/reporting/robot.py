@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec, RobotSpec
 
 FOOTER = "Page of nrs-design. A model of rigid links in floating point, not a proof."
-# Where the depths of the workspace are looked at.
+# Depths of the figures, as shares of the workspace.
 _SHARES = (0.0, 0.5, 0.9)
 # Least |cosine| between coupler and endoscope that is far from a singular pose.
 _NEAR_SINGULAR = 0.1

@@ -1,4 +1,4 @@
-"""The robot with its drives as a differential equation, and one step of it.
+"""Differential equation of the robot with its drives, and one time step.
 
 ``(M + N^2 I_r) q'' + damping q' + C q' + G + springs = torque_per_command delta - friction``: the
 full dynamics of all links, with counter-masses and springs where the robot is balanced, and the
@@ -55,7 +55,7 @@ def slide_or_stick(inertia: Array, impulse: Array, limit: Array, start: Array) -
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """Where the joints are, shape (n, 3), in rad and rad/s, and their dry friction in N m."""
+    """Angles, velocities and dry friction of the joints, shape (n, 3), in rad, rad/s and N m."""
 
     position: Array
     velocity: Array
@@ -73,7 +73,7 @@ class JointState:
 class Mechanism:
     """What the drives move: all links and the platform, and perhaps a balance."""
 
-    robot: Robot  # On its base, with its counter-masses if it has any
+    robot: Robot  # Robot on its base, with counter-masses if balanced
     balance: Balance | None = None  # The balance whose springs act on it
 
     def mass_and_bias(self, position: Array, velocity: Array) -> tuple[Array, Array]:
@@ -102,7 +102,7 @@ class Stepper:
     from the velocity at the end of the step.
     """
 
-    drives: JointDrive  # Of the batch
+    drives: JointDrive  # Drives of the batch
     h: float  # Length of a step in s
     mass: Array  # M and the rotors, shape (n, 3, 3)
     bias: Array  # Shape (n, 3), in N m

@@ -22,7 +22,7 @@ STEPS_PER_TICK = 1
 HELD_PHASE = 2e-3
 # Arrays of so many ticks still fit into memory.
 MOST_TICKS = 2_000_000
-# What is taken for granted, or left out.
+# Effects that the simulation leaves out.
 LEFT_OUT = (
     "compliance of the capstan's cable, of the links and of the joints",
     "backlash of the gearhead, and its efficiency (at most 70 %, thesis table 4.1)",

@@ -1,4 +1,4 @@
-"""What runs together: a controller, what it moves, and where to."""
+"""Tracks: a controller, its mechanism and its experiment."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Encoder:
     counts: int | None  # Per turn of the encoder; None does not round
 
     def read(self, joints: Array) -> Array:
-        """Return what encoders say of joint angles: their own angles in rad, to the count."""
+        """Return the encoder angles in rad for joint angles, rounded to the count."""
         angle = self.ratio * joints
         if self.counts is None:
             return angle
@@ -46,10 +46,10 @@ class Track:
 
     controller: str  # Name for people
     law: AbstractMotionLaw  # The controller
-    mechanism: Mechanism  # What it moves
+    mechanism: Mechanism  # Moved mechanism
     drive: JointDrive  # Behind each joint
     encoder: Encoder  # On each drive
-    experiment: Experiment  # What is asked for
+    experiment: Experiment  # Reference motion
 
 
 def experiment_tilt(spec: RobotSpec) -> float:

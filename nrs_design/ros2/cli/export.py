@@ -50,7 +50,7 @@ def export(
     name = loaded.spec.name
     designed = run_interaction(loaded, "has no controllers to export")
     _check_axis(loaded, axis)
-    # What must not be overwritten is refused before the work.
+    # Files of others are refused before the work.
     files = [out / f"{name}.{one.name}.ros2.yaml" for one in designed.design.controllers]
     for file in files:
         check_place(file, BEGINNING)

@@ -29,6 +29,9 @@ from nrs_design.robot.models.kinematics import (
 from nrs_design.robot.models.robot import Robot, robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
+from nrs_design.spec import RobotSpec
+from nrs_design.spec.kinds import LENGTH
+from nrs_design.spec.quantity import parse_quantity
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Recomputed, printed_rows_of
 
@@ -148,31 +151,28 @@ def tracking() -> tuple[float]:
 
 # Thesis 4.4: M_c and M_b in g, k in N/mm, of the left and the right leg.
 LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
-# Printed arms of the counter-masses and payload of a leg, in m and kg.
-ARM, COUPLER, PAYLOAD = 0.115, 0.220, 0.4428
+PAYLOAD = 0.4428  # Printed payload of a leg in kg
 
 
 def passive_balance() -> Iterable[Found]:
     """Recompute counter-masses, springs and the misprinted lengths."""
-    ours = design_balance(robot_spec(), robot())
-    left, arm = ours.left, robot().legs[0]
+    spec = robot_spec()
+    ours, rounded = (design_balance(one, robot()) for one in (spec, _with_printed_arms(spec)))
+    left, right, arm = ours.left, ours.right, robot().legs[0]
     moment = 1e-3 * LEFT[0] * left.arm_distance - PAYLOAD * arm.l3
     return (
-        *_leg(left),
-        *_leg(ours.right),
+        *_leg(left, rounded.left),
+        *_leg(right, rounded.right),
         1e6 * left.arm_mass * left.arm_distance / LEFT[0],
         1e6 * left.coupler_mass * left.coupler_distance / LEFT[1],
-        *(
-            leg.stiffness * leg.spring_on_crank / printed[2]
-            for leg, printed in ((left, LEFT), (ours.right, RIGHT))
-        ),
+        left.stiffness * left.spring_on_crank / LEFT[2],
+        right.stiffness * right.spring_on_crank / RIGHT[2],
         1e3 * moment / arm.arm.mass,
     )
 
 
-def _leg(ours: LegBalance) -> Iterator[Recomputed]:
-    """Yield masses, distance and spring of a leg, with what the printed arms would give."""
-    rounded = _with_printed_arms(ours)
+def _leg(ours: LegBalance, rounded: LegBalance) -> Iterator[Recomputed]:
+    """Yield masses, distance and spring of a leg, with those for the printed arms as facts."""
     for mass in ("arm_mass", "coupler_mass", "total_mass"):
         without = f"{1e3 * getattr(rounded, mass):.1f}"
         yield Recomputed(1e3 * getattr(ours, mass), facts=(without,))
@@ -180,17 +180,11 @@ def _leg(ours: LegBalance) -> Iterator[Recomputed]:
     yield Recomputed(1e-3 * ours.stiffness, facts=(f"{1e-3 * rounded.stiffness:.4f}",))
 
 
-def _with_printed_arms(ours: LegBalance) -> LegBalance:
-    """Return the balance with 115 and 220 mm in place of the fitted arms; same moments."""
-    M_c = ours.arm_mass * ours.arm_distance / ARM
-    more = robot().legs[0].l2 * (M_c - ours.arm_mass)
-    M_b = (ours.coupler_mass * ours.coupler_distance + more) / COUPLER
-    added = M_c - ours.arm_mass + M_b - ours.coupler_mass
-    moment = ours.total_mass * ours.total_distance + added * robot().legs[0].l1
-    return replace(
-        ours,
-        arm_mass=M_c,
-        coupler_mass=M_b,
-        total_mass=ours.total_mass + added,
-        stiffness=ours.stiffness * moment / (ours.total_mass * ours.total_distance),
-    )
+def _with_printed_arms(spec: RobotSpec) -> RobotSpec:
+    """Return the spec with the printed 115 and 220 mm in place of the fitted arms."""
+    assert spec.balance is not None
+    texts = {"arm_counter_arm": "115 mm", "coupler_counter_arm": "220 mm"}
+    arms = {name: parse_quantity(text, LENGTH) for name, text in texts.items()}
+    left, right = (leg.model_copy(update=arms) for leg in (spec.balance.left, spec.balance.right))
+    balance = spec.balance.model_copy(update={"left": left, "right": right})
+    return spec.model_copy(update={"balance": balance})

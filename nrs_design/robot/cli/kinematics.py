@@ -23,7 +23,7 @@ _LABELS = {
     "pose": "pose phi, psi, d [rad, rad, m]",
     "inverse_jacobian": "inverse Jacobian",
     "theta_xy_d": "orientation theta_x, theta_y, d [rad, rad, m]",
-    "joints": "joint angles [rad]",
+    "joints": "joint angles theta1, theta2, theta3 [rad]",
     "jacobian": "Jacobian",
     "joint_low": "lowest joint angles [rad]",
     "joint_high": "highest joint angles [rad]",

@@ -32,7 +32,7 @@ def correction(spec: SpecFile) -> Answer:
     loaded, _, robot = run_robot(spec)
     tilts = tilt_table(robot, thesis_tilts(), DEPTH_SINES)
     errors = ("mean_ratio_error", "least_squares_error")
-    content = {
+    content: dict[str, Any] = {
         "trajectories": [
             {"phi": sine.phi, "psi": sine.psi, "d": list(sine.d)}
             | lists(correction_coefficients(robot, sine), "mean_ratio", "least_squares", *errors)

@@ -78,7 +78,7 @@ def track(
     ]
     with progress("simulating") as tell:
         runs = [record.summary() for record in simulate(tracks, tell)]
-    content = {
+    content: dict[str, Any] = {
         "base_tilt": robot.base_tilt,
         "runs": runs,
         "not_modelled": list(LEFT_OUT),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -75,7 +75,7 @@ def export(
             note(f"{name}: {item.controller}: {item.verdict} with admittance_controller")
         note(f"{name}: not exported")
 
-    facts = {
+    facts: dict[str, Any] = {
         "spec": name,
         "verdict": worst,
         "controllers": {item.controller: item.verdict for item in found},

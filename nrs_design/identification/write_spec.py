@@ -47,10 +47,7 @@ _POWER_KEYS = ("exponent", "about", "preload")
 
 
 def merge_tissue(
-    loaded: LoadedSpec,
-    found: TissueIdentification,
-    environment: str | None,
-    arm: str | None,
+    loaded: LoadedSpec, found: TissueIdentification, environment: str | None, arm: str | None
 ) -> Merged:
     """Return a spec with the chosen law in one of its environments.
 

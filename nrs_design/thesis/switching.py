@@ -8,12 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.loop.modes import (
-    Rows,
-    position_mode,
-    to_force_coordinates,
-    velocity_mode,
-)
+from nrs_design.loop.modes import Rows, position_mode, to_force_coordinates, velocity_mode
 from nrs_design.models.contact import Elastic
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import realize

@@ -51,11 +51,7 @@ class RunJudgement:
 
 
 def judge_run(
-    log: RunLog,
-    bounds: RunBounds,
-    *,
-    proved: bool,
-    losable: bool = False,
+    log: RunLog, bounds: RunBounds, *, proved: bool, losable: bool = False
 ) -> RunJudgement:
     """Compare a log with the bounds of a spec, which a valid certificate proves or not.
 

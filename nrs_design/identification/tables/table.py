@@ -62,10 +62,7 @@ class MeasurementTable:
 
 
 def read_table(
-    data: Data,
-    layouts: Layouts,
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...] = (),
+    data: Data, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...] = ()
 ) -> MeasurementTable:
     """Read the columns of one of several layouts from a text with a line of names, or from arrays.
 
@@ -96,10 +93,7 @@ def read_table(
 
 
 def _read_arrays(
-    data: Mapping[str, Any],
-    layouts: Layouts,
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...],
+    data: Mapping[str, Any], layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
     arrays = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
     layout, columns = find_columns([*arrays], layouts, mapping, _ARRAYS, None, optional)
@@ -122,11 +116,7 @@ def _read_arrays(
 
 
 def _read(
-    raw: bytes,
-    path: Path,
-    layouts: Layouts,
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...],
+    raw: bytes, path: Path, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
     if len(raw) > _LARGEST_FILE:
         raise DataError("is larger than 512 MiB", path=path, remedy="record more slowly")

@@ -8,13 +8,7 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.robot.cli.options import (
-    Pose,
-    lists,
-    print_quantities,
-    read_pose,
-    three_numbers,
-)
+from nrs_design.robot.cli.options import Pose, lists, print_quantities, read_pose, three_numbers
 
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot

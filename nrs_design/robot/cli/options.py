@@ -20,8 +20,7 @@ Pose = Annotated[
     typer.Option("--pose", metavar="PHI,PSI,D", help="Pose in rad, rad and m, as in 0,0,0.2."),
 ]
 Velocity = Annotated[
-    str | None,
-    typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s."),
+    str | None, typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s.")
 ]
 Acceleration = Annotated[
     str | None,

@@ -4,10 +4,9 @@
 full dynamics of all links, with counter-masses and springs where the robot is balanced, and the
 rotors behind their gears.
 
-Dry friction really sticks: it is by velocities at the end of a step (Moreau's time stepping). No
-smoothing and no threshold on the velocity: a joint sticks if some friction within its limit stops
-it within the step, and then has the velocity zero. By hand, as SciPy integrates no equation with
-such a jump in it.
+Dry friction really sticks, by velocities at the end of a step (Moreau's time stepping): a joint has
+the velocity zero if some friction within its limit stops it within the step. There is no threshold
+on the velocity. SciPy integrates no equation with such a jump.
 """
 
 from __future__ import annotations

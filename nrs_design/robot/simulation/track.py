@@ -55,8 +55,7 @@ class Track:
 def experiment_tilt(spec: RobotSpec) -> float:
     """Return the tilt of the base for the experiments, in rad.
 
-    It is the one that the balance is made for, -28.5 deg in the thesis (4.2 and 4.4), or that of
-    the spec if it has no balance.
+    It is that of the balance, -28.5 deg in thesis 4.2 and 4.4, or that of the spec without one.
     """
     return spec.base_tilt.si if spec.balance is None else spec.balance.tilt.si
 

@@ -43,11 +43,7 @@ def reproduce(
         note(f"page written to {html}")
     for row in drifted(table):
         insist(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
-    return Answer(
-        lambda: _summary(table),
-        lambda: _print(table),
-        exit_codes.unless(drifted(table)),
-    )
+    return Answer(lambda: _summary(table), lambda: _print(table), exit_codes.unless(drifted(table)))
 
 
 def _summary(table: tuple[ReproducedValue, ...]) -> dict[str, Any]:

@@ -7,12 +7,7 @@ from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import ComputedTorque, IndependentJoint
 from nrs_design.robot.models.robot import build_robot
 from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
-from nrs_design.robot.simulation.track import (
-    CONTROLLERS,
-    Encoder,
-    build_tracks,
-    experiment_tilt,
-)
+from nrs_design.robot.simulation.track import CONTROLLERS, Encoder, build_tracks, experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 

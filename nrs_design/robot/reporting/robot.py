@@ -73,6 +73,8 @@ def robot_report(
     survey, inertia = survey_workspace(robot), examine_inertia(robot)
     obstacle, at = survey.obstacle, partial(linked, loaded)
     eigenvalues = ", ".join(map(number, inertia))
+    balance = _or_why(lambda: _balance(loaded, spec, robot)) if spec.balance else ()
+    balanced = [Section(_BALANCE, balance)] if balance else []
     claim = "Every pose of a grid over the declared workspace is within reach of all legs."
     if obstacle is not None:
         claim = (
@@ -96,11 +98,7 @@ def robot_report(
             _workspace(loaded, robot, survey),
             Section("Dynamics", _or_why(lambda: _dynamics(robot))),
             Section("Correction of the simplified torque", _or_why(lambda: _correction(robot))),
-            *(
-                [Section(_BALANCE, _or_why(lambda: _balance(loaded, spec, robot)))]
-                if spec.balance
-                else []
-            ),
+            *balanced,
             Section("What is not said", (Bullets("", _LIMITS),), boxed=True),
             spec_section(loaded),
         ),
@@ -116,10 +114,9 @@ def unreachable_share(survey: WorkspaceSurvey) -> str:
 
 
 def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
-    if survey.obstacle is None:
-        yield Light("Reach", State.GOOD, "the whole declared workspace", _WORKSPACE)
-    else:
-        yield Light("Reach", State.BAD, "not the whole declared workspace", _WORKSPACE)
+    reached, text = survey.obstacle is None, "the whole declared workspace"
+    state = State.GOOD if reached else State.BAD
+    yield Light("Reach", state, text if reached else f"not {text}", _WORKSPACE)
     nearest = float(np.min(survey.coupler_margin))
     state = State.GOOD if nearest > _NEAR_SINGULAR else State.DOUBTFUL
     text = f"couplers stay {number(nearest, 3)} from singular (|cosine|)"

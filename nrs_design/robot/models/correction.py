@@ -44,10 +44,10 @@ def simplified_dynamics(
     about_x = np.broadcast_to(robot.legs[2].axis, frame.shape[:-1])
     about_y = frame[..., :, 1]
     arm = frame @ body.center_of_mass + np.asarray(closed.d)[..., None] * frame[..., :, 2]
-    linear = _columns(np.cross(about_x, arm), np.cross(about_y, arm), frame[..., :, 2]) @ rates
+    linear = np.stack([np.cross(about_x, arm), np.cross(about_y, arm), frame[..., 2]], -1) @ rates
     if printed:
         about_y = np.broadcast_to(np.cross((0.0, 0.0, 1.0), robot.legs[2].axis), about_y.shape)
-    angular = _columns(about_x, about_y, np.zeros_like(about_x)) @ rates
+    angular = np.stack([about_x, about_y, np.zeros_like(about_x)], -1) @ rates
     Ms = (
         body.mass * linear.mT @ linear
         + angular.mT @ frame @ body.inertia @ frame.mT @ angular
@@ -72,10 +72,6 @@ def _platform_frame(closed: Posture) -> Array:
     y = scale(-1.0, middle.normal)
     x = cross(y, closed.W)
     return np.stack([stacked(x), stacked(y), stacked(closed.W)], axis=-1)
-
-
-def _columns(*vectors: Array) -> Array:
-    return np.stack(vectors, axis=-1)
 
 
 SAMPLES = 720

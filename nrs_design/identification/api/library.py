@@ -68,11 +68,13 @@ def identify_records(
 
 def _check(files: Sequence[object], kind: object, law: str | None) -> None:
     """Refuse unknown kinds and laws, and swapped arguments."""
-    if kind not in _KINDS:
-        if any(isinstance(file, str) and file in _KINDS for file in files):
+    # A kind in the place of a file may be of any type, also one without a hash.
+    kinds = tuple(_KINDS)
+    if kind not in kinds:
+        if any(isinstance(file, str) and file in kinds for file in files):
             remedy = "the records come first: identify(files, kind)"
             raise DataError("the arguments are swapped", remedy=remedy)
-        raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(_KINDS)}")
+        raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(kinds)}")
     if law is not None and kind != "tissue":
         raise DataError(f"records of kind {kind} have no law", remedy="leave law out")
     if law is not None and law not in LAWS:

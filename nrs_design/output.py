@@ -40,7 +40,6 @@ RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
 )
 SWEEP = b"point,exit_code,message,"
-TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
 # Our SARIF and JUnit files name this program.
 GATE = re.compile(
     rb"spec +verdict +common quadratic +decay rate +modes +certificate\n"

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from nrs_design.api.result import AbstractResult, Figures, drawn
-
-if TYPE_CHECKING:
-    from nrs_design.reporting import Report
+from nrs_design.api.result import AbstractResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +36,9 @@ class Audit(AbstractResult):
     first: AuditCheck | None  # The bound that was left first
     synthetic: bool  # Whether a simulation made the log
     facts: Mapping[str, Any]  # Content of ``--json``
-    page: Callable[[], Report]  # Draws its page
 
     def _facts(self) -> dict[str, Any]:
         return dict(self.facts)
-
-    def _drawings(self) -> Figures:
-        return drawn(self.page().sections)
 
     def _headline(self) -> str:
         made = ", SYNTHETIC data" if self.synthetic else ""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
+    from nrs_design.spec.spec_document import Merged
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +56,13 @@ class Destinations:
         self,
         answer: Answer,
         page: Callable[[], Report],
-        merge: Callable[[LoadedSpec], str] | None = None,
+        merge: Callable[[LoadedSpec], Merged] | None = None,
         doubts: Iterable[str] = (),
-        caveats: Iterable[str] = (),
     ) -> Answer:
         """Write a result to where it is wanted; return the answer, with what a spec has refused.
 
-        `merge` returns the spec with the result in it; `caveats` are said in the place of doubts
-        where the result is merged: a proof will rest on it.
+        `merge` returns the spec with the result in it, and its doubts, on which the gate fails:
+        they are said in the place of those of the result, and make it inconclusive.
         """
         spec, refused, merged = self.spec, None, None
         if merge is not None and spec is not None:
@@ -82,29 +82,32 @@ class Destinations:
             note(f"page written to {self.report}")
         if refused is None:
             # No option silences this.
-            for doubt in doubts if merged is None else caveats:
+            for doubt in doubts if merged is None else merged.doubts:
                 insist(f"warning: {doubt}")
         if spec is None:
             return answer
+        code = answer.code if refused is None else exit_codes.USAGE
         if merged is not None:
             _write_spec(spec, merged)
+            code = exit_codes.INCONCLUSIVE if merged.fails_gate else code
         not_written = None if refused is None else error_summary(refused)
         return replace(
-            answer,
-            facts=lambda: answer.facts() | {"not_written": not_written},
-            code=answer.code if refused is None else exit_codes.USAGE,
+            answer, facts=lambda: answer.facts() | {"not_written": not_written}, code=code
         )
 
 
-def _write_spec(spec: LoadedSpec, text: str) -> None:
+def _write_spec(spec: LoadedSpec, merged: Merged) -> None:
     from nrs_design.output import write_output
     from nrs_design.spec.describe import spec_changes
 
-    changed, lost = spec_changes(spec, text)
-    write_output(spec.path, text)
+    changed, lost = spec_changes(spec, merged.text)
+    write_output(spec.path, merged.text)
     for line in changed:
         note(f"changed: {line}")
     # What the user wrote, and is gone, no option silences.
     for line in lost:
         insist(f"warning: no longer there: {line}")
-    note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it")
+    then = f"run nrs-design gate {spec.path} to prove it"
+    if merged.fails_gate:
+        then = "the gate fails on its doubts until accept_doubt says why the range is used"
+    note(f"merged into {spec.path}; {then}")

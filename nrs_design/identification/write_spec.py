@@ -16,7 +16,7 @@ from nrs_design.identification.delay.identify import DelayIdentification
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.identify import TissueIdentification
-from nrs_design.identification.tissue.tangent import Tangent
+from nrs_design.identification.tissue.pool import Tangent
 from nrs_design.models.contact import (
     LAWS,
     LINEAR_LAWS,
@@ -24,7 +24,6 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
-from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import counted
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.features import MOTOR_RANGE
@@ -33,7 +32,7 @@ from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sampling import LONGEST_DELAY
-from nrs_design.spec.spec_document import SpecDocument
+from nrs_design.spec.spec_document import Merged, SpecDocument
 
 _DIGITS = 6
 # Fewer records do not show how specimens vary. A range that is narrower than the declared one by
@@ -48,17 +47,13 @@ _POWER_KEYS = ("exponent", "about", "preload")
 
 
 def merge_tissue(
-    loaded: LoadedSpec,
-    found: TissueIdentification,
-    environment: str | None,
-    arm: str | None,
-    warn: Progress = silent,
-) -> str:
-    """Return the text of a spec with the chosen law in one of its environments.
+    loaded: LoadedSpec, found: TissueIdentification, environment: str | None, arm: str | None
+) -> Merged:
+    """Return a spec with the chosen law in one of its environments.
 
     Its range is written, which covers the pooled interval and that of every record. Linear records
-    need a lever arm such as ``0.24 m``, by default the one of the spec. Of a range that gets
-    narrower by few records, or by much, is warned.
+    need a lever arm such as ``0.24 m``, by default the one of the spec. A range that gets narrower
+    by few records, or by much, is a doubt.
     """
     model, tangent, rotational = found.chosen, found.tangent, found.rotational
     law, ranges = (model.law, model.ranges) if tangent is None else (tangent.law, tangent.ranges)
@@ -82,7 +77,7 @@ def merge_tissue(
             remedy="choose a simpler law with --model, or record again as the message says",
         )
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["environments"][name], found.sources, warn)
+    writer = _Writer(document, document.root["environments"][name], found.sources)
     narrow = writer.narrowed(target.ranges, dict(zip(law.keys, ranges, strict=True)))
     power = tangent is not None and has_place(tangent)
     if tangent is not None and power:
@@ -103,9 +98,9 @@ def merge_tissue(
     known = (key for other in LINEAR_LAWS.values() for key in other.keys)
     for key in {*known, *_POWER_KEYS, "linearized_about"} - values.keys():
         writer.put(key, None)
-    writer.put_origin((*found.caveats, *narrow))
+    doubts = writer.put_origin((*found.caveats, *narrow))
     writer.put("range_id", writer.identified().environments[name].values_id())
-    return document.text()
+    return writer.merged(doubts)
 
 
 def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
@@ -119,10 +114,8 @@ def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
     }
 
 
-def merge_actuator(
-    loaded: LoadedSpec, found: ActuatorIdentification, warn: Progress = silent
-) -> str:
-    """Return the text of a spec with the identified actuator and its intervals.
+def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> Merged:
+    """Return a spec with the identified actuator and its intervals.
 
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
     beside the nominal values, for the record.
@@ -130,7 +123,7 @@ def merge_actuator(
     spec = check_actuator(loaded, found.unit)
     assert spec.actuator is not None, "as has been checked"
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["actuator"], found.sources, warn)
+    writer = _Writer(document, document.root["actuator"], found.sources)
     if found.unit != spec.actuator.command:
         writer.put("command", found.unit)
     covered = spec.combines(MOTOR_RANGE)
@@ -152,15 +145,15 @@ def merge_actuator(
     writer.put("range_covers", "confidence" if covered else None)
     late = found.clear_dead_time if spec.takes_dead_time else None
     writer.put("dead_time", late and _outwards(late, "s")["range"])
-    writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
+    doubts = writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
     rewritten = writer.identified().actuator
     assert rewritten is not None
     writer.put("range_id", rewritten.values_id() if covered else None)
-    return document.text()
+    return writer.merged(doubts)
 
 
-def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> str:
-    """Return the text of a spec of a sampled loop with the age of its force sample.
+def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> Merged:
+    """Return a spec of a sampled loop with the age of its force sample.
 
     A record that shows dynamics and no mere delay is a `DataError`.
     """
@@ -188,8 +181,7 @@ def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> str:
     document = SpecDocument(loaded)
     writer = _Writer(document, document.root["sampling"], found.sources)
     writer.put("delay", low if low == high else [low, high])
-    writer.put_origin(found.caveats)
-    return document.text()
+    return writer.merged(writer.put_origin(found.caveats))
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +191,6 @@ class _Writer:
     document: SpecDocument  # The spec
     node: Any  # The part
     sources: Sequence[Source]  # The records
-    warn: Progress = silent  # Takes what speaks against a range beside the doubts of the fit
 
     def put(self, key: str, value: object) -> None:
         """Set a key, or remove it for None; comments within a range stay."""
@@ -215,8 +206,8 @@ class _Writer:
         else:
             self.document.put(self.node, key, value)
 
-    def put_origin(self, caveats: Sequence[str]) -> None:
-        """Note files and doubts; a reason for other doubts does not hold for them."""
+    def put_origin(self, caveats: Sequence[str]) -> Sequence[str]:
+        """Note files and doubts, and return the doubts; a reason for others does not hold."""
         provenance = [
             {
                 "file": source.path.name,
@@ -229,7 +220,8 @@ class _Writer:
         texts = [_one_line(caveat) for caveat in caveats]
         if [dict(item) for item in self.node.get("provenance", ())] == provenance:
             # The range that was declared before the same records is not there any more.
-            texts += [old for old in before if old.endswith(NARROWER)]
+            kept = [old for old in before if old.endswith(NARROWER)]
+            texts, caveats = [*texts, *kept], [*caveats, *kept]
         if len(texts) > MAX_DOUBTS:
             count = len(texts) - MAX_DOUBTS + 1
             texts = [*texts[: MAX_DOUBTS - 1], f"and {count} more"]
@@ -237,6 +229,11 @@ class _Writer:
         if texts != before:
             self.put("accept_doubt", None)
         self.put("doubts", texts or None)
+        return caveats
+
+    def merged(self, doubts: Sequence[str]) -> Merged:
+        """Return the new spec, which the gate refuses for doubts that are not accepted."""
+        return Merged(self.document.text(), tuple(doubts), "accept_doubt" in self.node)
 
     def narrowed(
         self, declared: Mapping[str, RangedQuantity], found: Mapping[str, Estimate]
@@ -253,7 +250,6 @@ class _Writer:
             ):
                 times = f"{before / after:.3g} times {NARROWER}"
                 texts.append(f"{key}: the range from {counted(records, 'record')} is {times}")
-                self.warn(texts[-1])
         return texts
 
     def identified(self) -> InteractionDesignSpec:

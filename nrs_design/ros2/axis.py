@@ -23,8 +23,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.ros2.law import AdmittanceLaw, Axis
-from nrs_design.ros2.quantities import Range
+from nrs_design.ros2.law import AdmittanceLaw, Axis, Range
 
 ONE = Fraction(1)
 # Digits in base two behind the point of a square root that is not rational.
@@ -35,7 +34,6 @@ BITS = 80
 class ControllerContext:
     """What the controller runs in."""
 
-    period: Fraction  # Of the control loop, in s
     # Smallest and largest age of the measured offset and force, in periods.
     delays: tuple[int, int]
     # stiffness, rotational: range of the environment for translations in N/m, and for rotations in
@@ -44,10 +42,11 @@ class ControllerContext:
     rotational: Range | None
     # Smallest and largest time constant in s with which the robot follows its command.
     lag: Range = (Fraction(0), Fraction(0))
+    period: Fraction = Fraction(0)  # Period of the control loop in s; each controller has its own
 
     @property
     def kept(self) -> Interval:
-        """Where E lies, the share of its distance to the command that the robot keeps."""
+        """Enclosure of E, the share of the distance to the command that remains after a period."""
         shares = [
             exponential_between(-self.period / lag) if lag else (Fraction(0), Fraction(0))
             for lag in self.lag
@@ -55,14 +54,14 @@ class ControllerContext:
         return Interval(shares[0][0], shares[0][0], shares[1][1])
 
     def of(self, axis: Axis) -> Range | None:
-        """Return the range that an axis meets; None where nothing is said of it."""
+        """Return the range of stiffness for an axis; None without a range."""
         if not axis.selected:
             return Fraction(0), Fraction(0)
         return self.rotational if axis.rotates else self.stiffness
 
 
 def square_root_between(value: Fraction) -> Interval:
-    """Enclose a square root of what is not negative; a rational one is a point."""
+    """Enclose the square root of a number >= 0; a rational root is a point."""
     p, q = value.numerator, value.denominator
     root = Fraction(isqrt(p * q), q)
     if root * root == value:
@@ -80,7 +79,7 @@ def axis_damping(axis: Axis) -> Interval:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """What one period does to ``[v, e, steps of the robot, f, delta]``.
+    """Map of ``[v, e, steps of the robot, f, delta]`` over one period.
 
     e is the distance to the command, delta where the robot was at the greatest age; e and f are
     left out where there is no lag and no filter, the steps where nothing is old.
@@ -172,7 +171,7 @@ def _modes(frame: _Frame, box: Box, delays: tuple[int, int], name: str) -> Itera
 
 
 def assumptions(around: ControllerContext) -> tuple[str, ...]:
-    """Say what a verdict on an axis takes for granted."""
+    """Return the assumptions of a verdict on an axis."""
     first, last = around.delays
     age = f"{first} periods" if first == last else f"{first} to {last} periods, in any order,"
     follows = "the robot is where it was commanded to be (--lag)"

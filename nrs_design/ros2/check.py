@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -15,34 +15,25 @@ from nrs_design.proof.bounds import nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import ControllerContext, assumptions, close_axis
-from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.law import (
+    LAW,
+    ROTATIONAL,
+    STIFFNESS,
+    AdmittanceLaw,
+    Axis,
+    Range,
+    is_admittance,
+    read_law,
+)
 from nrs_design.ros2.managers import MANAGER, find_undecided, kind_of, managers_of
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
-from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS, Range
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.document import Position
 
-# The worst first: what a file is called where its axes differ.
+# The verdict on a file is the worst of its axes; the worst comes first.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
-
-
-@dataclass(frozen=True, slots=True)
-class Question:
-    """What is asked about a parameter file."""
-
-    delays: tuple[int, int]  # Smallest and largest age of what is measured, in periods
-    # stiffness, rotational: what translations meet in N/m, and rotations in N*m/rad.
-    stiffness: Range | None
-    rotational: Range | None
-    rate: Fraction | None = None  # Of the control loop in 1/s; None for what the file says
-    # Smallest and largest time constant of the robot in s.
-    lag: Range = (Fraction(0), Fraction(0))
-
-    def around(self, period: Fraction) -> ControllerContext:
-        """Return what a controller of this period runs in."""
-        return ControllerContext(period, self.delays, self.stiffness, self.rotational, self.lag)
 
 
 @dataclass(slots=True)
@@ -55,40 +46,34 @@ class _Asker:
     known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
     def obligation(self, law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Obligation:
-        """Return what holds for one axis."""
-        status, message = self._decide(law, axis, around)
-        name = f"{law.node.name}: axis {axis.name}"
-        return _owed(ROS_AXIS, self.path, name, status, message, axis.position)
-
-    def _decide(
-        self, law: AdmittanceLaw, axis: Axis, around: ControllerContext
-    ) -> tuple[Status, str]:
+        """Return the verdict on one axis."""
+        name, met = f"{law.node.name}: axis {axis.name}", around.of(axis)
         if axis.selected and law.force_from is not None:
             words = f"its force comes through {law.force_from}, another controller: not modelled"
-            return Status.INCONCLUSIVE, words
-        met = around.of(axis)
-        if met is None:
-            option, kind = "--stiffness", STIFFNESS
-            if axis.rotates:
-                option, kind = "--rotational-stiffness", ROTATIONAL
+            found = Status.INCONCLUSIVE, words
+        elif met is None:
+            kind = ROTATIONAL if axis.rotates else STIFFNESS
+            option = "--rotational-stiffness" if axis.rotates else "--stiffness"
             words = f"nothing is said of what it touches: give {option} '{kind.example}'"
-            return Status.INCONCLUSIVE, words
-        numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates, met)
-        key = (*numbers, law.joint_damping, law.filter_coefficient, around.period)
-        if key not in self.known:
-            self.progress(f"{law.node.name}: axis {axis.name}")
-            self.known[key] = self._certify(law, axis, around, met)
-        return self.known[key]
+            found = Status.INCONCLUSIVE, words
+        else:
+            numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates)
+            key = (*numbers, met, law.joint_damping, law.filter_coefficient, around.period)
+            if key not in self.known:
+                self.progress(name)
+                self.known[key] = self._certify(law, axis, around, met)
+            found = self.known[key]
+        return _owed(ROS_AXIS, self.path, name, *found, axis.position)
 
     def _certify(
         self, law: AdmittanceLaw, axis: Axis, around: ControllerContext, met: Range
     ) -> tuple[Status, str]:
         system = close_axis(law, axis, around)
         found = certify(system, limits=self.limits)
-        status = Status(str(found.verdict))
-        unit = "N*m/rad" if axis.rotates else "N/m"
-        where = "by itself (no force acts on it)" if not axis.selected else _range(met, unit)
-        evidence = found.evidence
+        status, evidence = Status(str(found.verdict)), found.evidence
+        where = "by itself (no force acts on it)"
+        if axis.selected:
+            where = _range(met, "N*m/rad" if axis.rotates else "N/m")
         if evidence is None:
             claim = "neither a proof nor a refutation was found"
         elif status is Status.PROVED:
@@ -103,46 +88,31 @@ class _Asker:
         return status, f"{where}: {claim}"
 
 
-def check_file(path: Path, question: Question, limits: Limits, progress: Progress) -> GateOutcome:
-    """Read every admittance controller of a file, and decide each of its axes."""
+def check_file(
+    path: Path, asked: ControllerContext, limits: Limits, progress: Progress
+) -> GateOutcome:
+    """Read every admittance controller of a file, and decide each of its axes.
+
+    Each is asked about in a context with the period that the file says.
+    """
     nodes = read_nodes(path)
-    others = (node for node in nodes if node.base_name != MANAGER)
-    admittances = [node for node in others if is_admittance(node, kind_of(node, nodes))]
-    # What stands at a wildcard is said of the controllers that it means: no controller of its own.
-    controllers = [node for node in admittances if not any(map(node.stands_for, admittances))]
-    if not controllers:
-        names = ", ".join(node.name for node in nodes)
-        raise SpecError(
-            f"no admittance controller is among its nodes ({names})",
-            path=path,
-            remedy="name the file that holds `admittance:` with mass, damping_ratio and stiffness",
-        )
+    controllers = _controllers(nodes, path)
+    beside = [*find_undecided(nodes, controllers)]
+    names = {node.base_name for node in nodes} | {other.name for other in beside}
     asker = _Asker(path, limits, progress)
     obligations: list[Obligation] = []
     cautions: list[Caution] = []
     notes: dict[str, None] = {}
-    beside = [*find_undecided(nodes, controllers)]
     for node in controllers:
-        beside_it = (other for other in nodes if other.base_name != MANAGER)
-        if shared := [*_shared(node, beside_it, LAW, "")]:
-            obligations += [_unreadable(path, node, fault) for fault in shared]
-            continue
-        try:
-            law = read_law(node, {n.base_name for n in nodes} | {other.name for other in beside})
-        except SpecError as error:
-            obligations += [_unreadable(path, node, fault) for fault in error.faults]
-            continue
         managers = managers_of(node, nodes)
         manager = managers[0] if len(managers) == 1 else None
-        if manager is not None and question.rate is None:
-            instead = f", or give the rate as {RATE}"
-            if rates := [*_shared(manager, nodes, ("update_rate",), instead)]:
-                obligations += [_unreadable(path, node, fault) for fault in rates]
-                continue
-        rate = _rate(law, manager, question.rate, path)
-        around = question.around(1 / rate)
-        notes |= dict.fromkeys(assumptions(around))
-        notes[_rate_note(law, manager, question.rate, rate)] = None
+        law, faults = _read(node, manager, nodes, names)
+        if law is None:
+            obligations += [_unreadable(path, node, fault) for fault in faults]
+            continue
+        rate = _rate(law, manager, path)
+        around = replace(asked, period=1 / rate)
+        notes |= dict.fromkeys((*assumptions(around), _rate_note(law, manager, rate)))
         read = "the parameters that the law depends on are read as written"
         obligations.append(_owed(ROS_PARAMETERS, path, node.name, Status.MET, read, node.position))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
@@ -155,22 +125,55 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         path, tuple(obligations), verdict=_verdict(obligations), cautions=tuple(cautions)
     )
     said = [f"taken for granted: {note}" for note in notes]
-    if names := ", ".join(other.name for other in beside if other.silent):
-        said.append(f"passed over, because they command nothing: {names}")
+    if silent := ", ".join(other.name for other in beside if other.silent):
+        said.append(f"passed over, because they command nothing: {silent}")
     return GateOutcome((outcome,), tuple(said))
 
 
-def _shared(
-    node: RosNode, nodes: Iterable[RosNode], names: Collection[str], instead: str
-) -> Iterator[Fault]:
-    """Yield what another node may say of a node, too, of some names."""
-    for other in (other for other in nodes if other is not node and node.may_share(other)):
-        for name in (name for name in other.values if name in names):
-            yield other.fault(
-                name,
-                f"counts for {node.name}, too; if both say it, releases differ in which counts",
-                f"write it at {node.name} alone{instead}",
-            )
+def _controllers(nodes: Collection[RosNode], path: Path) -> list[RosNode]:
+    """Return the admittance controllers of a file, of which there must be one."""
+    others = (node for node in nodes if node.base_name != MANAGER)
+    found = [node for node in others if is_admittance(node, kind_of(node, nodes))]
+    # A wildcard sets parameters of the controllers that match it, and is no controller itself.
+    found = [node for node in found if not any(map(node.stands_for, found))]
+    if not found:
+        names = ", ".join(node.name for node in nodes)
+        raise SpecError(
+            f"no admittance controller is among its nodes ({names})",
+            path=path,
+            remedy="name the file that holds `admittance:` with mass, damping_ratio and stiffness",
+        )
+    return found
+
+
+def _read(
+    node: RosNode, manager: RosNode | None, nodes: Collection[RosNode], names: Collection[str]
+) -> tuple[AdmittanceLaw | None, Sequence[Fault]]:
+    """Return the law of a controller, or the faults of its parameters and rate."""
+    beside = [other for other in nodes if other.base_name != MANAGER]
+    if shared := _shared(node, beside, LAW):
+        return None, shared
+    try:
+        law = read_law(node, names)
+    except SpecError as error:
+        return None, error.faults
+    rates = _shared(manager, nodes, ("update_rate",)) if manager else []
+    return (None, rates) if rates else (law, ())
+
+
+def _shared(node: RosNode, nodes: Iterable[RosNode], names: Collection[str]) -> list[Fault]:
+    """Return a fault for each of some parameters that another node may set, too."""
+    return [
+        other.fault(
+            name,
+            f"counts for {node.name}, too; if both say it, releases differ in which counts",
+            f"write it at {node.name} alone",
+        )
+        for other in nodes
+        if other is not node and node.may_share(other)
+        for name in other.values
+        if name in names
+    ]
 
 
 def _owed(
@@ -186,16 +189,13 @@ def _verdict(obligations: Iterable[Obligation]) -> str | None:
     return None if worst in (None, Status.ERROR) else str(worst)
 
 
-def _rate(
-    law: AdmittanceLaw, manager: RosNode | None, given: Fraction | None, path: Path
-) -> Fraction:
+def _rate(law: AdmittanceLaw, manager: RosNode | None, path: Path) -> Fraction:
     """Return how often the law runs, in 1/s: the manager's rate, or its own if that is lower."""
-    found = given
-    if found is None and manager is not None and "update_rate" in manager.values:
-        found = _written_rate(manager, path)
     own = law.values["update_rate"][0]
-    if found is None or found <= 0:
-        remedy = f"give {RATE}, or add update_rate of controller_manager"
+    known = manager is not None and "update_rate" in manager.values
+    found = _written_rate(manager, path) if manager and known else Fraction(0)
+    if found <= 0:
+        remedy = "add update_rate of controller_manager"
         message = "the rate of the control loop is not in this file"
         raise _refusal(path, law.node.position, message, remedy)
     if 0 < own < found and found % own:
@@ -204,30 +204,9 @@ def _rate(
             law.node.place("update_rate"),
             f"update_rate: {own} does not divide {found}, the rate of the control loop: the "
             "controller runs at uneven periods, or at another rate",
-            "write a rate that divides it, or give the rate at which it runs, such as "
-            f"--rate '{own} 1/s'",
+            "write a rate that divides it",
         )
     return min(found, own) if own else found
-
-
-def _refusal(path: Path, place: Position, message: str, remedy: str) -> SpecError:
-    return SpecError.of((Fault(message, place.line, place.column, remedy),), path)
-
-
-def _rate_note(
-    law: AdmittanceLaw, manager: RosNode | None, given: Fraction | None, rate: Fraction
-) -> str:
-    """Say where the rate comes from: what is not in the file is not seen."""
-    said = f"{law.node.name} runs {nearly(rate)} times per second, as "
-    if given is None:
-        assert manager is not None  # _rate
-        said += f"{manager.name} (line {manager.place('update_rate').line}) says"
-    else:
-        said += "--rate says"
-    if law.values["update_rate"][0]:
-        own = law.node.place("update_rate").line
-        said += f" together with its own update_rate (line {own})"
-    return f"{said}; what a launch file, a command line or another file sets is not seen here"
 
 
 def _written_rate(manager: RosNode, path: Path) -> Fraction:
@@ -239,6 +218,22 @@ def _written_rate(manager: RosNode, path: Path) -> Fraction:
     except SpecError as error:
         place, remedy = manager.place("update_rate"), error.remedy or ""
         raise _refusal(path, place, f"update_rate: {error.message}", remedy) from None
+
+
+def _refusal(path: Path, place: Position, message: str, remedy: str) -> SpecError:
+    return SpecError.of((Fault(message, place.line, place.column, remedy),), path)
+
+
+def _rate_note(law: AdmittanceLaw, manager: RosNode | None, rate: Fraction) -> str:
+    """Name the source of the rate: only this file is read."""
+    assert manager is not None  # _rate
+    line = manager.place("update_rate").line
+    said = f"{law.node.name} runs {nearly(rate)} times per second, as "
+    said += f"{manager.name} (line {line}) says"
+    if law.values["update_rate"][0]:
+        own = law.node.place("update_rate").line
+        said += f" together with its own update_rate (line {own})"
+    return f"{said}; what a launch file, a command line or another file sets is not seen here"
 
 
 def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:

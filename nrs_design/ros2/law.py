@@ -15,7 +15,14 @@ from types import MappingProxyType
 from nrs_design.errors import Fault, SpecError
 from nrs_design.ros2.parameters import RosNode, read_bool, read_double, read_integer, texts
 from nrs_design.spec.document import Position, Scalar
+from nrs_design.spec.quantity import QuantityKind
 
+Range = tuple[Fraction, Fraction]  # Both ends
+
+# Quantities of options, each with an example that the option accepts.
+STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
+ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
+LAG = QuantityKind("a time", ("s",), "5..20 ms")
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 TYPE = "admittance_controller/AdmittanceController"
 FILTER = "ft_sensor.filter_coefficient"
@@ -30,7 +37,7 @@ class Parameter:
     # low, high: bounds that the node enforces.
     low: Fraction | None = None
     high: Fraction | None = None
-    default: Fraction | None = None  # None if it must be given
+    default: Fraction | None = None  # None if the parameter is required
 
 
 LAW: Mapping[str, Parameter] = MappingProxyType(
@@ -47,7 +54,7 @@ LAW: Mapping[str, Parameter] = MappingProxyType(
         "update_rate": Parameter(read_integer, low=Fraction(0), default=Fraction(0)),
     }
 )
-# What no law depends on, and the node does not start without.
+# Required parameters that the law does not depend on.
 NEEDED = (
     "joints",
     "command_interfaces",
@@ -64,7 +71,7 @@ NEEDED = (
     "gravity_compensation.frame.id",
     "gravity_compensation.CoG.pos",
 )
-# All that the node knows; it passes over everything else without a word.
+# All parameters of the node; it ignores others silently.
 KNOWN = frozenset(
     {*LAW, *NEEDED, "command_joints", "robot_description", "type", "use_sim_time", "is_async"}
 )
@@ -75,8 +82,8 @@ class Axis:
     """One Cartesian axis of the law, in SI units of a translation or a rotation."""
 
     name: str  # Out of `AXES`
-    position: Position  # Where its mass stands
-    selected: bool  # Whether the force acts on it
+    position: Position  # Place of its mass
+    selected: bool  # Whether the force acts on the axis
     # As written; the damping is ``2 damping_ratio sqrt(mass stiffness)``.
     mass: Fraction
     damping_ratio: Fraction
@@ -84,7 +91,7 @@ class Axis:
 
     @property
     def rotates(self) -> bool:
-        """Whether it is a rotation."""
+        """Whether the axis is a rotation."""
         return self.name.startswith("r")
 
 
@@ -97,12 +104,12 @@ class AdmittanceLaw:
     joint_damping: Fraction  # In 1/s
     filter_coefficient: Fraction  # Share of the new sample in the smoothed force, in each period
     values: Mapping[str, tuple[Fraction, ...]]  # Everything that was read, defaults filled in
-    # Another controller, if the force comes through one, which may filter or scale it.
+    # Another controller that the force comes through, and that may filter or scale the force.
     force_from: str | None = None
 
 
 def is_admittance(node: RosNode, kind: str | None) -> bool:
-    """Tell whether a node is an admittance controller, by its type or by what it is given."""
+    """Tell whether a node is an admittance controller, by its type or its parameters."""
     if kind is not None:
         return kind == TYPE
     return any(name.startswith("admittance.") for name in node.values)
@@ -126,7 +133,7 @@ def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
 
 
 def _too_few_joints(node: RosNode) -> Iterator[Fault]:
-    """Yield a fault where the joints cannot move the six axes one by one.
+    """Yield a fault where fewer than six joints couple the axes.
 
     The controller computes all six, selected or not, and takes the pseudoinverse of the Jacobian:
     with fewer joints than axes, that couples them, and no proof of one axis by itself holds.
@@ -154,8 +161,9 @@ def _read(
     node: RosNode, name: str, parameter: Parameter
 ) -> tuple[tuple[Fraction, ...], list[Fault]]:
     """Return the values of a parameter, and what is wrong with it."""
+    count = parameter.count
+    wanted = "one value" if count == 1 else f"a list of {count} values"
     if name not in node.values and name in node.places:
-        wanted = _wanted(parameter)
         return (), [node.fault(name, f"expected {wanted}, found a map", f"write {wanted}")]
     if name not in node.values:
         if parameter.default is not None:
@@ -164,8 +172,7 @@ def _read(
         remedy = f"write {name} for {near[0]}" if near else f"add {name}: the controller needs it"
         return (), [node.fault(name, "is missing", remedy)]
     listed = texts(node.values[name])
-    if listed is None or len(listed) != parameter.count:
-        wanted = _wanted(parameter)
+    if listed is None or len(listed) != count:
         found = "something else" if listed is None else f"{len(listed)}"
         return (), [node.fault(name, f"expected {wanted}, found {found}", f"write {wanted}")]
     numbers, faults = [], []
@@ -173,13 +180,9 @@ def _read(
         try:
             numbers.append(_bounded(item, parameter))
         except SpecError as error:
-            at = index if parameter.count > 1 else None
+            at = index if count > 1 else None
             faults.append(node.fault(name, error.message, error.remedy or "", at))
     return tuple(numbers), faults
-
-
-def _wanted(parameter: Parameter) -> str:
-    return "one value" if parameter.count == 1 else f"a list of {parameter.count} values"
 
 
 def _bounded(item: Scalar, parameter: Parameter) -> Fraction:

@@ -1,4 +1,4 @@
-"""What the controller managers of a parameter file run, and what of it nobody decides."""
+"""Controllers that the managers of a parameter file run, and those without a verdict."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from nrs_design.ros2.parameters import RosNode, texts
 from nrs_design.spec.document import Position
 
 MANAGER = "controller_manager"
-# Types of ros2_controllers that publish what they read: none of them moves a robot.
+# Types of ros2_controllers that only publish measurements, and move no robot.
 SILENT = frozenset(
     {
         "battery_state_broadcaster/BatteryStateBroadcaster",
@@ -28,12 +28,12 @@ SILENT = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class UndecidedNode:
-    """What a file names beside the controllers that are decided."""
+    """A node or controller without a verdict."""
 
-    name: str  # Of the node, or of the controller that a manager runs
-    position: Position  # Where it stands
-    reason: str  # What it is, and what is missing
-    silent: bool  # Whether it commands nothing
+    name: str  # Name of the node, or of the controller that a manager runs
+    position: Position  # Place in the file
+    reason: str  # Type, and the missing part
+    silent: bool  # Whether the controller only publishes
 
 
 def managers_of(node: RosNode, nodes: Collection[RosNode]) -> list[RosNode]:
@@ -52,7 +52,7 @@ def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
 def find_undecided(
     nodes: Collection[RosNode], decided: Collection[RosNode]
 ) -> Iterator[UndecidedNode]:
-    """Yield whatever may be a controller, and is none of those that are decided."""
+    """Yield the possible controllers that have no verdict."""
     for node in nodes:
         if node not in decided and node.base_name != MANAGER and "*" not in node.base_name:
             kind = kind_of(node, nodes)

@@ -26,9 +26,9 @@ class RosNode:
     """A node of ROS 2 and its parameters."""
 
     name: str  # With its namespace, as the file says
-    position: Position  # Where its parameters begin
+    position: Position  # Begin of its parameters
     values: Mapping[str, Node]  # By dotted name
-    places: Mapping[str, Position]  # Where each name stands, and each level above one
+    places: Mapping[str, Position]  # Place of each name and each level
 
     @property
     def namespace(self) -> str:
@@ -41,7 +41,7 @@ class RosNode:
         return self.name.rpartition("/")[2]
 
     def may_share(self, other: RosNode) -> bool:
-        """Tell whether parameters of one may count for the other: by a wildcard, or the same name.
+        """Tell whether two nodes may share parameters, by a wildcard or the same name.
 
         Which of two counts depends on the release of ROS 2 and on their order.
         """
@@ -52,7 +52,7 @@ class RosNode:
         return _means(self.name, other.name) or _means(other.name, self.name)
 
     def stands_for(self, other: RosNode) -> bool:
-        """Tell whether it is a wildcard that means another node, which is none."""
+        """Tell whether the name is a wildcard that matches a node without wildcard."""
         return "*" in self.name and "*" not in other.name and _means(self.name, other.name)
 
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
@@ -61,7 +61,7 @@ class RosNode:
         return Fault(f"{self.name}: {name}: {message}", place.line, place.column, remedy)
 
     def place(self, name: str, index: int | None = None) -> Position:
-        """Return where a parameter or an item of it stands; the node's place if it is not there."""
+        """Return the place of a parameter, or of its item; by default the place of the node."""
         value = self.values.get(name)
         if index is not None and isinstance(value, Sequence) and index < len(value.items):
             return value.items[index].position
@@ -69,7 +69,7 @@ class RosNode:
 
 
 def _means(pattern: str, name: str) -> bool:
-    """Tell whether a name, in which ``**`` is any parts and ``*`` is one, means a node."""
+    """Tell whether a pattern matches a node; ``**`` is any number of parts, ``*`` is one."""
     parts = pattern.strip("/").split("/")
     wanted = (
         "(/[^/]+)*" if part == "**" else "/[^/]+" if "*" in part else f"/{re.escape(part)}"
@@ -110,7 +110,7 @@ def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
 
 
 def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
-    """Yield name, value and place, of levels, too; a dot in a key is the same as a level."""
+    """Yield name, value and place of parameters and levels; a dot in a key is a level."""
     for key, value in tree.entries.items():
         name = f"{before}{key}"
         yield name, value, tree.keys[key]
@@ -119,7 +119,7 @@ def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
 
 
 def read_double(text: str) -> Fraction:
-    """Read what ROS 2 takes for a double, exactly as written; like the node, refuse an integer."""
+    """Read a double exactly as written; like the node of ROS 2, refuse an integer."""
     value = parse_exact(text)
     if _INTEGER.fullmatch(text):
         raise SpecError(
@@ -133,14 +133,14 @@ def read_double(text: str) -> Fraction:
 
 
 def read_integer(text: str) -> Fraction:
-    """Read what ROS 2 takes for an integer."""
+    """Read an integer by the rules of ROS 2."""
     if not _INTEGER.fullmatch(text):
         raise SpecError(f"{quoted(text)} is no integer", remedy="write digits without a point")
     return parse_exact(text)
 
 
 def read_bool(text: str) -> Fraction:
-    """Read what ROS 2 takes for a truth value, as 1 or 0."""
+    """Read a truth value by the rules of ROS 2, as 1 or 0."""
     if text in _TRUE or text in _FALSE:
         return Fraction(text in _TRUE)
     raise SpecError(f"{quoted(text)} is no truth value", remedy="write true or false")

@@ -1,4 +1,4 @@
-"""What about the parameters surprises people, though the controller starts with them."""
+"""Doubtful parameters with which the controller starts."""
 
 from __future__ import annotations
 
@@ -6,57 +6,43 @@ from collections.abc import Iterator
 from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
-from typing import NamedTuple
 
 from nrs_design.gating.obligations import Caution
 from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
 from nrs_design.ros2.parameters import RosNode, texts
 
-# The default share of the new sample, and all that smooth the force as long.
+# Default share of the new sample; smaller shares smooth the force longer.
 SLOW = Fraction(1, 20)
 RETUNING = "enable_parameter_update_without_reactivation"
-
-
-class Trap(NamedTuple):
-    """What is doubtful about a parameter, or about one item of its list."""
-
-    name: str
-    message: str
-    item: int | None = None
+# Name of a parameter, index in its list, and the doubt.
+Trap = tuple[str, int | None, str]
 
 
 def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
     """Yield what is doubtful about the parameters, each at its place."""
-    for name, message, index in _traps(law):
+    for name, index, message in (*_damping(law), *_filter(law), *_others(law), *_unknown(law)):
         place = law.node.place(name, index)
         yield Caution(path, f"{law.node.name}: {name}: {message}", place.line, place.column)
 
 
-def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
-    yield from _damping(law)
-    yield from _filter(law)
+def _others(law: AdmittanceLaw) -> Iterator[Trap]:
     masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
     if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
-        yield Trap(
+        yield (
             "admittance.mass",
+            None,
             "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
             "frame, as stiffness and damping do; before, along those of the base, so axes are "
             "coupled wherever the two frames are turned, which no verdict here covers",
         )
     if law.values[RETUNING][0]:
         said = "is on" if RETUNING in law.node.values else "is on by default"
-        yield Trap(
-            RETUNING,
-            f"{said}: parameters change while the controller runs, and no verdict covers that; set "
-            "it to false",
-        )
+        rest = "parameters change while the controller runs, and no verdict covers that"
+        yield RETUNING, None, f"{said}: {rest}; set it to false"
     if missing := [name for name in NEEDED if name not in law.node.values]:
-        yield Trap(
-            missing[0],
-            f"the controller does not start without {', '.join(missing)}, unless another file or a "
-            "launch file gives what this one does not",
-        )
-    yield from _unknown(law)
+        names = ", ".join(missing)
+        rest = "unless another file or a launch file gives what this one does not"
+        yield missing[0], None, f"the controller does not start without {names}, {rest}"
 
 
 def _same_frame(node: RosNode) -> bool:
@@ -74,36 +60,36 @@ def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     known, others = sorted(KNOWN), []
     for name in unknown_names(law.node):
         if near := get_close_matches(name, known, n=1, cutoff=0.85):
-            yield Trap(name, f"is not known to the controller; did you mean {near[0]}?")
+            yield name, None, f"is not known to the controller; did you mean {near[0]}?"
         else:
             others.append(name)
     if others:
         listed = ", ".join(others)
-        yield Trap(others[0], f"the controller passes over what it does not know: {listed}")
+        yield others[0], None, f"the controller passes over what it does not know: {listed}"
 
 
 def _damping(law: AdmittanceLaw) -> Iterator[Trap]:
     for index, axis in enumerate(law.axes):
         if axis.damping_ratio < 0:
             message = f"is negative for axis {axis.name}: it drives the motion"
-            yield Trap("admittance.damping_ratio", message, index)
+            yield "admittance.damping_ratio", index, message
         elif axis.selected and axis.stiffness == 0 < axis.damping_ratio:
             left = float(law.joint_damping * axis.mass)
             unit = "N*m*s/rad" if axis.rotates else "N*s/m"
-            yield Trap(
+            yield (
                 "admittance.stiffness",
+                index,
                 f"0 takes away the damping of axis {axis.name}, 2 damping_ratio sqrt(mass "
                 f"stiffness); joint_damping is left, {float(law.joint_damping):g} 1/s, which acts "
                 f"like {left:.3g} {unit}",
-                index,
             )
 
 
 def _filter(law: AdmittanceLaw) -> Iterator[Trap]:
     c = law.filter_coefficient
     if FILTER not in law.node.values:
-        yield Trap(FILTER, "is not given; the default 0.05 smooths the force over 20 periods")
+        yield FILTER, None, "is not given; the default 0.05 smooths the force over 20 periods"
     elif not 0 < c <= 1:
-        yield Trap(FILTER, f"{float(c):g} is no share of the new sample: write 0 < c <= 1")
+        yield FILTER, None, f"{float(c):g} is no share of the new sample: write 0 < c <= 1"
     elif c <= SLOW:
-        yield Trap(FILTER, f"{float(c):g} smooths the force over {float(1 / c):.0f} periods")
+        yield FILTER, None, f"{float(c):g} smooths the force over {float(1 / c):.0f} periods"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from nrs_design.errors import SpecError
 from nrs_design.spec.document import Data, Node, to_data
@@ -15,6 +15,19 @@ from nrs_design.spec.task_space import file_of
 _COMMENT = re.compile(r"(?m)(?<!\S)#.*$")
 # A longer text is a sentence, and no quantity.
 _SENTENCE = 40
+
+
+class Merged(NamedTuple):
+    """A spec with a result in it."""
+
+    text: str  # Of the spec
+    doubts: tuple[str, ...]  # What speaks against a proof that rests on the result
+    accepted: bool  # Whether the spec says why it is used all the same
+
+    @property
+    def fails_gate(self) -> bool:
+        """Whether the gate fails on the doubts."""
+        return bool(self.doubts) and not self.accepted
 
 
 class SpecDocument:

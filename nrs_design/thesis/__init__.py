@@ -1,1 +1,1 @@
-"""The numbers that the thesis prints, beside what this package computes."""
+"""Printed numbers of the thesis compared with recomputed ones."""

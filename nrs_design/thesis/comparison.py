@@ -1,4 +1,4 @@
-"""One printed number of the thesis beside the recomputed one, and what the comparison says."""
+"""Comparison of one printed number of the thesis with the recomputed one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Erratum:
 
     id: str  # Short name, which rows use
     where: str  # Sections, equations or tables
-    about: str  # What it is
+    about: str  # Description
 
 
 @cache
@@ -46,7 +46,6 @@ DIGITS = 6
 # it, or nearer than one unit of its last printed digit. How far our own value may be from the
 # reference that this package has on record is another thing: the `Tolerance` of each row.
 STANDARD = 1e-3
-CUT_OFF = "Cut off in print, not rounded."
 BECAUSE = "Not reproducible, because"
 
 
@@ -66,14 +65,14 @@ class ReproducedValue:
     """One line of the table."""
 
     name: str  # The quantity
-    section: str  # Where the thesis prints it
+    section: str  # Place in the thesis
     printed: str  # As printed
     value: str | None  # As recomputed; None where nothing can be computed
     unit: str  # Of both
     # Difference between value and print over the print (the difference itself where the print is
     # zero), the largest one of several numbers; None where the print is not a number.
     deviation: float | None
-    # ``drift`` says that the package no longer computes what this row has on record.
+    # ``drift``: the package no longer computes the value on record.
     verdict: PrintVerdict
     note: str  # What is right, and why; or why nothing can be recomputed
     # How near to the print a value must be to reproduce it, number by number: a part of the print,
@@ -91,13 +90,13 @@ class ReproducedValue:
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How far a value may be from our reference, entry by entry: relative to it, or absolute."""
+    """Largest deviation of each entry from the reference, relative or absolute."""
 
     relative: float = 0.0
     absolute: float = 0.0
 
     def __str__(self) -> str:
-        """Write it as a part of the number, or in its unit."""
+        """Write the tolerance in percent, or in the unit of the number."""
         parts = [f"{100 * self.relative:.15g} %"] if self.relative else []
         return " or ".join(parts + ([f"{self.absolute:g}"] if self.absolute else []))
 
@@ -113,19 +112,19 @@ class Tolerance:
 
 @dataclass(frozen=True, slots=True)
 class PrintedRow:
-    """A line of `rows.yaml`: what is printed, and what is on record of it."""
+    """A line of `rows.yaml`: the print, and the verdict on record."""
 
     verdict: str  # A `PrintVerdict`, as long as the value is what is on record
     name: str
     section: str
     printed: Printed = ""
     unit: str = ""
-    value: str | None = None  # What is right, in words; numbers are computed
-    right: Printed = ""  # Our reference, where it is not the print
-    # Beyond these the value has drifted from our reference: relative to it, or absolute.
+    value: str | None = None  # Correct statement in words; numbers are computed
+    right: Printed = ""  # Reference, if different from the print
+    # Largest deviation from the reference that is no drift, relative or absolute.
     relative: float = 0.0
     absolute: float = 0.0
-    because: str = ""  # Why it is not reproducible: a clause
+    because: str = ""  # Reason for not reproducible, as a clause
     fitted: str = ""
     note: str = ""
     errata: tuple[str, ...] = ()
@@ -141,12 +140,12 @@ class PrintedRow:
 class Recomputed:
     """What is computed for a row."""
 
-    value: Value | str | None = None  # Words or numbers; None is the words of the row
-    holds: bool = True  # Whether the computation says what is on record
-    facts: tuple[object, ...] = ()  # What stands in its note, or in `because`
+    value: Value | str | None = None  # Words or numbers; None for the words of the row
+    holds: bool = True  # Whether the computation confirms the record
+    facts: tuple[object, ...] = ()  # Values for the braces in note and `because`
 
 
-# A result, its value alone, or whether it holds.
+# A result, a value alone, or a truth value.
 Found = Recomputed | Value | str | bool
 
 
@@ -164,7 +163,7 @@ def _fixed(value: Any) -> Any:
 
 
 def compare_topic(topic: str, found: Iterable[Found]) -> tuple[ReproducedValue, ...]:
-    """Return the rows of a topic with what is computed for them, in the order of `rows.yaml`."""
+    """Return the rows of a topic with their results, in the order of `rows.yaml`."""
     rows, results = printed_rows_of(topic), list(found)
     if len(results) != sum(row.is_computed for row in rows):
         raise ValueError(f"{topic}: {len(results)} results for the rows that are computed")
@@ -199,8 +198,6 @@ def judge(row: PrintedRow, found: Found) -> ReproducedValue:
     agrees = result.holds and tolerance.allows(values, reference)
     if compared and verdict is not PrintVerdict.FITTED:
         agrees &= meets_standard(values, printed) == (verdict is PrintVerdict.REPRODUCED)
-    if agrees and verdict is PrintVerdict.REPRODUCED and _is_cut_off(values, printed):
-        note = f"{note} {CUT_OFF}".strip()
     digits = max(DIGITS, _significant_digits(text)) if compared else DIGITS
     return made(
         ", ".join(format_number(number, digits) for number in values),
@@ -215,7 +212,7 @@ def judge(row: PrintedRow, found: Found) -> ReproducedValue:
 
 
 def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
-    """Tell whether all values are as near to their print as `STANDARD` or its digits ask for."""
+    """Tell whether all values agree with their print within `STANDARD` or one last digit."""
     texts, target = _texts(printed), _numbers(printed)
     return len(values) == len(target) and all(
         abs(v - p) <= max(STANDARD * abs(p), _last_digit(text))
@@ -223,41 +220,26 @@ def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
     )
 
 
-def _is_cut_off(values: Sequence[Number], printed: Printed) -> bool:
-    """Tell whether a print has the digits of its value, but is not rounded from it."""
-    if not _is_numeric(printed):
-        return False
-    pairs = zip(values, _numbers(printed), map(_last_digit, _texts(printed)), strict=True)
-    return any(
-        isinstance(v, float) and p and digit / 2 < abs(v) - abs(p) < digit for v, p, digit in pairs
-    )
-
-
 def _last_digit(text: str) -> float:
     """Return one unit of the last digit of a printed number, of a pair of its coarser part."""
-    return max(_unit(part) for part in text.removesuffix("j").split("+-"))
-
-
-def _unit(text: str) -> float:
-    mantissa, _, exponent = text.strip().partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return float(10.0 ** (int(exponent or 0) - decimals))
+    parts = (part.strip().partition("e") for part in text.removesuffix("j").split("+-"))
+    return max(float(f"1e{int(e or 0) - len(digits.partition('.')[2])}") for digits, _, e in parts)
 
 
 def drifted(rows: Sequence[ReproducedValue]) -> tuple[ReproducedValue, ...]:
-    """Return the rows that no longer agree with what is on record."""
+    """Return the rows that no longer agree with the record."""
     return tuple(row for row in rows if row.verdict is PrintVerdict.DRIFT)
 
 
 def format_number(value: Number, digits: int = DIGITS) -> str:
-    """Write a number, and a complex one as the pair that it stands for."""
+    """Write a number; a complex number stands for a conjugate pair."""
     if isinstance(value, complex) and value.imag:
         return f"{value.real:.{digits}g} +- {abs(value.imag):.{digits}g}j"
     return f"{value.real:.{digits}g}"
 
 
 def _precision(printed: Printed) -> str:
-    """Write what `meets_standard` asks for, number by number; equal ones once."""
+    """Write the tolerance of `meets_standard` for each number; equal ones once."""
     found = (
         f"{digit:g}" if digit > STANDARD * abs(number) else str(Tolerance(STANDARD))
         for number, digit in zip(_numbers(printed), map(_last_digit, _texts(printed)), strict=True)

@@ -55,7 +55,7 @@ def _generalized_coordinates() -> bool:
     energies = (float(potential_energy(robot(), pose)) for pose in (ahead, behind))
     power = (next(energies) - next(energies)) / (2 * _STEP)
     rates = (inverse_kinematics(robot(), ahead) - inverse_kinematics(robot(), behind)) / 2 / _STEP
-    # The rates of the print's q_a would be those of the rates: zero, where these are constant.
+    # With the printed q_a the power would be zero at constant rates.
     return abs(power) > 0.1 and math.isclose(
         float(gravity_torque(robot(), _POSE) @ rates), power, rel_tol=1e-6
     )
@@ -130,7 +130,7 @@ def _decay() -> bool:
 
 def _update() -> bool:
     A = np.array(impedance_rows(thesis.SOFT, "0.01", "2.15", "force"), dtype=float)
-    # Half of what 5.21 asks for: the print makes no update here, though 5.21 does not hold.
+    # Half of the Q of 5.21: the printed rule makes no update here, though 5.21 does not hold.
     Q = own_norms(A[None], Time.CONTINUOUS)[0] / 2
     v = float(np.linalg.eigvalsh(A.T @ Q + Q @ A + np.eye(4))[-1])
     return 0 < v < 1
@@ -166,14 +166,11 @@ def _gradient() -> bool:
 
     x = np.linalg.eigh(A.T @ Q + Q @ A + np.eye(4))[1][:, -1]
     printed = A @ np.outer(x, x) + np.outer(x, x) @ A.T
-    pairs = [(i, j) for i in range(4) for j in range(i, 4)]
-    for i, j in pairs:
-        change = np.zeros((4, 4))
-        change[i, j] = change[j, i] = 1e-6
-        slope = (v(Q + change) - v(Q - change)) / 2e-6
-        if not math.isclose(slope, float((printed * change).sum()) * 1e6, abs_tol=1e-3):
-            return False
-    return True
+    unit = np.eye(4)
+    # All symmetric changes of two entries, or of one on the diagonal.
+    changes = [np.maximum(e := np.outer(a, b), e.T) for a in unit for b in unit]
+    slopes = [(v(Q + 1e-6 * change) - v(Q - 1e-6 * change)) / 2e-6 for change in changes]
+    return bool(np.allclose(slopes, [(printed * change).sum() for change in changes], atol=1e-3))
 
 
 def _order() -> bool:

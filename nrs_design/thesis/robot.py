@@ -29,17 +29,11 @@ from nrs_design.robot.models.kinematics import (
 from nrs_design.robot.models.robot import Robot, robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_grid
-from nrs_design.robot.simulation.experiment import MOTIONS
-from nrs_design.robot.simulation.track import MEASURED
+from nrs_design.spec import RobotSpec
+from nrs_design.spec.kinds import LENGTH
+from nrs_design.spec.quantity import parse_quantity
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import (
-    Found,
-    PrintedRow,
-    Recomputed,
-    ReproducedValue,
-    judge,
-    printed_rows_of,
-)
+from nrs_design.thesis.comparison import Found, Recomputed, printed_rows_of
 
 POSE = (0.1, -0.2, 0.2)
 _ROUNDING = 1e-12
@@ -60,21 +54,14 @@ def robot_kinematics() -> Iterator[Found]:
 
 
 def _orientation() -> Iterator[Recomputed]:
-    pose = np.array(POSE)
+    pose, (phi, psi, _) = np.array(POSE), POSE
     W = np.array(direction(pose))
-    phi, psi, _ = POSE
     printed = _pointing(phi, float(np.arcsin(np.sin(psi) / np.cos(phi))))
     x, y, _ = orientation(pose)
     ours, theirs = (float(np.abs(z - W).max()) for z in (_pointing(float(x), float(y)), printed))
     yield Recomputed(None, ours < _ROUNDING < theirs, (f"{theirs:.2g}",))
-    step = 1e-6
-    slopes = np.stack(
-        [
-            (orientation(pose + step * unit) - orientation(pose - step * unit)) / (2 * step)
-            for unit in np.eye(3)
-        ],
-        axis=-1,
-    )
+    h = 1e-6 * np.eye(3)
+    slopes = np.transpose([(orientation(pose + s) - orientation(pose - s)) / 2e-6 for s in h])
     J = orientation_jacobian(pose)
     exchanged = np.abs(J[[1, 0, 2]] - slopes).max()
     yield Recomputed(holds=bool(np.abs(J - slopes).max() < 1e-8 < exchanged))
@@ -94,9 +81,9 @@ def _speeds(ours: Robot) -> Iterator[Found]:
     upright = np.stack([0 * depths, 0 * depths, depths], axis=-1)
     crank = np.abs(inverse_jacobian(ours, upright) @ v)[:, 2]
     yield Recomputed(float(crank.min()), facts=(f"{1e3 * depths[crank.argmin()]:.0f}",))
-    peaks = joint_peaks(ours, thesis_grid())
-    yield tuple(float(speed) for speed in peaks.velocity)
-    largest = ", ".join(f"{value:.2f}" for value in peaks.acceleration)
+    velocity, acceleration = joint_peaks(ours, thesis_grid())
+    yield tuple(map(float, velocity))
+    largest = ", ".join(f"{value:.2f}" for value in acceleration)
     yield Recomputed(per_speed * 2.0094, facts=(largest,))
 
 
@@ -139,14 +126,14 @@ def correction() -> Iterator[Recomputed]:
     yield Recomputed(facts=(_text(found.mean_ratio), _text(found.least_squares)))
     table = [row.printed for row in printed_rows_of("correction") if row.section == "table 3.5"]
     texts = (row.split(", ") if isinstance(row, str) else row for row in table)
-    means = np.array([[float(k) for k in row] for row in texts]).mean(axis=0)
-    yield Recomputed(tuple(map(float, means)))
+    yield Recomputed(tuple(map(float, np.array([*texts], float).mean(axis=0))))
     for degrees in TILTS:
         tilted = robot().tilted(float(np.radians(degrees)))
-        depth = correction_coefficients(tilted, DEPTH_SINES)
-        angles = correction_coefficients(tilted, TABLE_3_5)
-        yield Recomputed(_ratios(depth)[:2])
-        yield Recomputed(facts=tuple(f"{found.mean_ratio[2]:.3f}" for found in (depth, angles)))
+        depth, angles = (
+            _ratios(correction_coefficients(tilted, sines)) for sines in (DEPTH_SINES, TABLE_3_5)
+        )
+        yield Recomputed(depth[:2])
+        yield Recomputed(facts=tuple(f"{found[2]:.3f}" for found in (depth, angles)))
 
 
 def _ratios(found: Correction) -> tuple[float, ...]:
@@ -157,57 +144,35 @@ def _text(numbers: object) -> str:
     return ", ".join(f"{number:.4f}" for number in np.ravel(np.asarray(numbers, dtype=float)))
 
 
-_BECAUSE = "it was measured on the robot; `nrs-design robot track` shows simulated errors beside it"
-
-
 def tracking() -> tuple[float]:
     """Recompute the period of half of the measurements."""
     return (2 * pi / 0.0571,)
 
 
-def measured() -> Iterator[ReproducedValue]:
-    """List the root mean square errors of tables 4.2 to 4.10."""
-    for controller, tables, prints in MEASURED:
-        for moved, table, printed in zip(MOTIONS, tables, prints, strict=True):
-            name = f"tracking RMSE of phi, psi, d; {controller}, {moved} moves"
-            row = PrintedRow(
-                "not reproducible",
-                name,
-                f"table {table}",
-                printed,
-                "deg, deg, mm",
-                because=_BECAUSE,
-            )
-            yield judge(row, Recomputed())
-
-
 # Thesis 4.4: M_c and M_b in g, k in N/mm, of the left and the right leg.
 LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
-# Printed arms of the counter-masses and payload of a leg, in m and kg.
-ARM, COUPLER, PAYLOAD = 0.115, 0.220, 0.4428
+PAYLOAD = 0.4428  # Printed payload of a leg in kg
 
 
 def passive_balance() -> Iterable[Found]:
     """Recompute counter-masses, springs and the misprinted lengths."""
-    ours = design_balance(robot_spec(), robot())
-    left, arm = ours.left, robot().legs[0]
+    spec = robot_spec()
+    ours, rounded = (design_balance(one, robot()) for one in (spec, _with_printed_arms(spec)))
+    left, right, arm = ours.left, ours.right, robot().legs[0]
     moment = 1e-3 * LEFT[0] * left.arm_distance - PAYLOAD * arm.l3
     return (
-        *_leg(left),
-        *_leg(ours.right),
+        *_leg(left, rounded.left),
+        *_leg(right, rounded.right),
         1e6 * left.arm_mass * left.arm_distance / LEFT[0],
         1e6 * left.coupler_mass * left.coupler_distance / LEFT[1],
-        *(
-            leg.stiffness * leg.spring_on_crank / printed[2]
-            for leg, printed in ((left, LEFT), (ours.right, RIGHT))
-        ),
+        left.stiffness * left.spring_on_crank / LEFT[2],
+        right.stiffness * right.spring_on_crank / RIGHT[2],
         1e3 * moment / arm.arm.mass,
     )
 
 
-def _leg(ours: LegBalance) -> Iterator[Recomputed]:
-    """Yield masses, distance and spring of a leg, with what the printed arms would give."""
-    rounded = _with_printed_arms(ours)
+def _leg(ours: LegBalance, rounded: LegBalance) -> Iterator[Recomputed]:
+    """Yield masses, distance and spring of a leg, with those for the printed arms as facts."""
     for mass in ("arm_mass", "coupler_mass", "total_mass"):
         without = f"{1e3 * getattr(rounded, mass):.1f}"
         yield Recomputed(1e3 * getattr(ours, mass), facts=(without,))
@@ -215,17 +180,11 @@ def _leg(ours: LegBalance) -> Iterator[Recomputed]:
     yield Recomputed(1e-3 * ours.stiffness, facts=(f"{1e-3 * rounded.stiffness:.4f}",))
 
 
-def _with_printed_arms(ours: LegBalance) -> LegBalance:
-    """Return the balance with 115 and 220 mm in place of the fitted arms; same moments."""
-    M_c = ours.arm_mass * ours.arm_distance / ARM
-    more = robot().legs[0].l2 * (M_c - ours.arm_mass)
-    M_b = (ours.coupler_mass * ours.coupler_distance + more) / COUPLER
-    added = M_c - ours.arm_mass + M_b - ours.coupler_mass
-    moment = ours.total_mass * ours.total_distance + added * robot().legs[0].l1
-    return replace(
-        ours,
-        arm_mass=M_c,
-        coupler_mass=M_b,
-        total_mass=ours.total_mass + added,
-        stiffness=ours.stiffness * moment / (ours.total_mass * ours.total_distance),
-    )
+def _with_printed_arms(spec: RobotSpec) -> RobotSpec:
+    """Return the spec with the printed 115 and 220 mm in place of the fitted arms."""
+    assert spec.balance is not None
+    texts = {"arm_counter_arm": "115 mm", "coupler_counter_arm": "220 mm"}
+    arms = {name: parse_quantity(text, LENGTH) for name, text in texts.items()}
+    left, right = (leg.model_copy(update=arms) for leg in (spec.balance.left, spec.balance.right))
+    balance = spec.balance.model_copy(update={"left": left, "right": right})
+    return spec.model_copy(update={"balance": balance})

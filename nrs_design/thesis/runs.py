@@ -103,44 +103,15 @@ def into(tissue: float, *pairs: tuple[float, float], control: str = "") -> str:
     return f"{begin}, control: {control}" if control else begin
 
 
-def withdrawals(speed: float) -> tuple[Run, Run]:
-    """Simulate 6.3.2.3: in at 8 deg/s until the torque is at rest, and out, at a speed in deg/s.
-
-    The first run is without switching.
-    """
-    both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
-    command = ((0, 8), (1, 8), (1, -speed), (2, -speed))
-    without, switched = (
-        run_scenario(both, into(0.5, *command, control=control))
-        for control in ("{fixed: insertion}", BY_SIGN)
-    )
-    return without, switched
-
-
-def tissue_and_tool() -> Run:
-    """Simulate 6.4: into soft tissue, out, onto the tool on the other side, and off it."""
-    there_and_back = ((6, -8), (7, -2), (8, -8), (9, 0), (10, 8), (11, 0))
-    return run_scenario(
-        {"tissue": admittance("0.01", "2.15"), "tool": admittance("0.01", "2.11", "stiff")},
-        f"command: {{{points(*PROFILE[:6], *there_and_back)}}}, "
-        "surfaces: [{environment: soft, at: 8 deg}, "
-        "{environment: stiff, at: -2 deg, side: below}], "
-        "control: {contact: {soft: tissue, stiff: tool}}",
-    )
-
-
-def away(speed: float) -> float:
-    """Return in how many s the deflection by the largest torque is passed, at a speed in deg/s."""
-    return math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
-
-
 def simulated_runs() -> Iterator[Found]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
     yield from _profile()
     for speed in (5, 3):
-        before, after = (_withdrawal(run) for run in withdrawals(speed))
+        before, after = (_withdrawal(speed, c) for c in ("{fixed: insertion}", BY_SIGN))
         gain = 100 * (1 - after / before)
-        yield Recomputed((before, after, gain), gain > 0, (f"{away(speed):.2f}",))
+        # Time in s to pass the deflection under the largest torque.
+        away = math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
+        yield Recomputed((before, after, gain), gain > 0, (f"{away:.2f}",))
     yield _limited(PROPORTIONAL)
     yield _limited(PROPORTIONAL_FROM_MEASURED)
     yield _limited(INTEGRAL, BLEEDING)
@@ -162,8 +133,15 @@ def _profile() -> Iterator[Recomputed]:
     yield Recomputed((float(shown[-1]), error or math.nan))
 
 
-def _withdrawal(run: Run) -> float:
-    (time,) = metrics.withdrawal_times(run.response.t, run.response["hand"], run.response["torque"])
+def _withdrawal(speed: float, control: str) -> float:
+    """Simulate 6.3.2.3: in at 8 deg/s until the torque is at rest, and out; return the time in s.
+
+    The speed out is in deg/s; control says, as YAML, which controller acts when.
+    """
+    both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
+    command = ((0, 8), (1, 8), (1, -speed), (2, -speed))
+    found = run_scenario(both, into(0.5, *command, control=control)).response
+    (time,) = metrics.withdrawal_times(found.t, found["hand"], found["torque"])
     return time
 
 
@@ -175,13 +153,20 @@ def _limited(force: str, more: str = "") -> tuple[float, float]:
     inside = run.response.t >= begin
     t, torque = run.response.t[inside], run.response["torque"][inside]
     peak = thesis.TORQUE * (1 + metrics.overshoot(torque, thesis.TORQUE))
-    # What is left of a decay after the run, or of its arithmetic, is no steady error.
+    # The rest of a decay, and rounding, are no steady error.
     return peak, round(100 * metrics.steady_state_error(t, torque, thesis.TORQUE), 6)
 
 
 def _tissue_and_tool() -> Recomputed:
-    """Judge the run of 6.4."""
-    run = tissue_and_tool()
+    """Simulate 6.4: into soft tissue, out, onto the tool on the other side, and off it."""
+    there_and_back = ((6, -8), (7, -2), (8, -8), (9, 0), (10, 8), (11, 0))
+    run = run_scenario(
+        {"tissue": admittance("0.01", "2.15"), "tool": admittance("0.01", "2.11", "stiff")},
+        f"command: {{{points(*PROFILE[:6], *there_and_back)}}}, "
+        "surfaces: [{environment: soft, at: 8 deg}, "
+        "{environment: stiff, at: -2 deg, side: below}], "
+        "control: {contact: {soft: tissue, stiff: tool}}",
+    )
     t, hand, torque = run.response.t, run.response["hand"], run.response["torque"]
     parts: tuple[Array, Array] = np.maximum(torque, 0.0), np.minimum(torque, 0.0)
     errors = tuple(
@@ -206,7 +191,7 @@ class HandRun:
     """What one move shows, until the way is made."""
 
     time: float  # How long the way takes, s
-    effort: Effort  # Of the hand
+    effort: Effort  # Effort of the hand
     last: float  # Velocity of the admittance at the end, rad/s
 
 
@@ -221,7 +206,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     motion = realize(thesis.CLOSED_LOOP)
     Ap, C = np.array(motion.A, float), np.array(motion.C, float)
     n = len(C)
-    # After those of the motion loop: velocity of the admittance, angle, way of the hand, one.
+    # States after the motion loop: velocity of the admittance, angle, way of the hand, one.
     velocity, angle, hand, one = range(n, n + 4)
     F, A = np.zeros(n + 4), np.zeros((n + 4, n + 4))
     if stiffness is None:
@@ -245,7 +230,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
 
 
 def changes(values: list[float]) -> tuple[float, ...]:
-    """Return by how much each pair of `PAIRS` differs, in % of the first."""
+    """Return the difference of each pair of `PAIRS`, in % of the first."""
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 

@@ -8,12 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.loop.modes import (
-    Rows,
-    position_mode,
-    to_force_coordinates,
-    velocity_mode,
-)
+from nrs_design.loop.modes import Rows, position_mode, to_force_coordinates, velocity_mode
 from nrs_design.models.contact import Elastic
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import realize
@@ -142,7 +137,7 @@ def _describe(found: Certification) -> str:
     return f"{found.verdict}, {rate_words(rate, found.system.time)}"
 
 
-# Updates that a row tries, enough for what ends at all in the scan below, and quick.
+# Updates of a row: enough for every run that ends in the scan below.
 UPDATES, FEW = 20_000, 2000
 # One radius of many; the thesis prints none.
 RADIUS = 1e5
@@ -188,5 +183,5 @@ def _result(system: SwitchedSystem, coordinates: Coordinates, *, ends: bool) -> 
     told = ", ".join(
         f"not within {updates:,}" if result.Q is None else f"{result.updates:,}" for result in found
     )
-    # Of the two orders one suffices: which of them is quicker depends on rounding.
+    # One of two orders suffices: rounding decides which order is quicker.
     return Recomputed(told, any(result.Q is not None for result in found) == ends)

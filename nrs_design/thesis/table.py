@@ -1,4 +1,4 @@
-"""The whole table: what is computed for each topic of `rows.yaml`, and the table as a page."""
+"""Table of all topics of `rows.yaml`, and its page."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CONVERTED = (
 )
 
 
-# What computes the results of each topic.
+# Function that computes the results of each topic.
 TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
     "formulas": formulas.formulas,
     "tissue": materials.tissue,
@@ -57,9 +57,8 @@ def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
 
 
 def topic_rows(topic: str) -> tuple[ReproducedValue, ...]:
-    """Return the rows of a topic: those of `rows.yaml`, and what was measured on the robot."""
-    rows = compare_topic(topic, TOPICS[topic]())
-    return (*rows, *robot.measured()) if topic == "tracking" else rows
+    """Return the rows of a topic of `rows.yaml`, compared with what is computed."""
+    return compare_topic(topic, TOPICS[topic]())
 
 
 def count_verdicts(table: Sequence[ReproducedValue]) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""What the thesis starts from: numbers that it measures, chooses or takes from data sheets."""
+"""Input numbers of the thesis: measured, chosen, or from data sheets."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ def peak(at, size):
 def test_it_reports_first_what_audit_finds(tmp_path, monitor, rules, data):
     """The same kind at the same time; nothing where nothing is found, whatever the stiffness."""
     spec, log = spec_with(rules), log_of(tmp_path, data)
-    found = judge_run(log, bounds_of_spec(spec), proved=True, command_limit=3000.0)
+    found = judge_run(log, replace(bounds_of_spec(spec), saturates=3000.0), proved=True)
     kind, time = monitor(spec).watch(log)
     if found.first is None:
         assert kind == "NONE"

@@ -74,12 +74,7 @@ def tissue_record(
 
 
 def actuator_record(
-    frequency: float,
-    seed: int,
-    *,
-    amplitude: float = 3000.0,
-    periods: int = 8,
-    noise: float = 3e-4,
+    frequency: float, seed: int, *, amplitude: float = 3000.0, periods: int = 8, noise: float = 3e-4
 ) -> tuple[Array, Array, Array]:
     """Return time, command and angle of a sinusoid of a frequency in Hz, an amplitude in rpm.
 

@@ -7,15 +7,11 @@ from functools import cache
 import pytest
 
 from nrs_design.errors import DataError, SpecError
+from nrs_design.identification import write_spec
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.tissue.identify import identify_tissue
-from nrs_design.identification.write_spec import (
-    law_to_write,
-    merge_actuator,
-    merge_sampling,
-    merge_tissue,
-)
+from nrs_design.identification.write_spec import law_to_write
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.describe import spec_changes
@@ -63,6 +59,18 @@ def late():
 @cache
 def delayed(delay):
     return identify_delay(signals.copy(1, delay=delay))
+
+
+def merge_tissue(*given):
+    return write_spec.merge_tissue(*given).text
+
+
+def merge_actuator(*given):
+    return write_spec.merge_actuator(*given).text
+
+
+def merge_sampling(*given):
+    return write_spec.merge_sampling(*given).text
 
 
 def merged(tmp_path, text):

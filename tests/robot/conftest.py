@@ -39,4 +39,4 @@ def drive(spec):
 
 @pytest.fixture(scope="session")
 def smooth(drive):
-    return replace(drive, coulomb_friction=0.0)
+    return replace(drive, friction=0.0)

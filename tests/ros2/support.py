@@ -28,7 +28,7 @@ def law(one, damping, c):
 def around(period, ages, stiffness, lag=(0, 0)):
     """ControllerContext in which all axes meet the same."""
     ends = F(stiffness[0]), F(stiffness[1])
-    return ControllerContext(F(period), ages, ends, ends, (F(lag[0]), F(lag[1])))
+    return ControllerContext(ages, ends, ends, (F(lag[0]), F(lag[1])), F(period))
 
 
 def changed(tmp_path, *changes, more=""):

@@ -122,16 +122,6 @@ def test_the_standard_is_a_part_in_a_thousand_or_the_last_digit(value, printed, 
     assert meets_standard((value,), printed) == meets
 
 
-@pytest.mark.parametrize(
-    ("printed", "value", "cut"),
-    [("0.99", 0.9974, True), ("-0.99", -0.9974, True), ("1.00", 0.9974, False), ("1", 1.0, False)],
-)
-def test_what_is_cut_off_is_said(printed, value, cut):
-    found = confirm(printed, value, Tolerance(1e-2))
-    assert found.verdict == "reproduced"
-    assert ("Cut off" in found.note) == cut
-
-
 def near(printed, value, right, tolerance):
     given = {"right": right, "because": "why", "tolerance": tolerance}
     return row("not reproducible", printed, value, **given)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ from nrs_design.identification.datasets.records import read_actuator, read_signa
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.reporting.actuator import view_actuator
 from nrs_design.identification.reporting.delay import view_delay
-from nrs_design.identification.reporting.running import run_facts, run_report
+from nrs_design.identification.reporting.running import run_facts
 from nrs_design.identification.reporting.tissue import view_tissue
 from nrs_design.identification.reporting.view import FindingView, is_synthetic
 from nrs_design.identification.running.bounds import Check, proof_of, read_run_bounds
@@ -69,12 +68,12 @@ def identify_records(
 
 def _check(files: Sequence[object], kind: object, law: str | None) -> None:
     """Refuse unknown kinds and laws, and swapped arguments."""
+    # A kind in the place of a file may be of any type, also one without a hash.
     kinds = tuple(_KINDS)
     if kind not in kinds:
         if any(isinstance(file, str) and file in kinds for file in files):
-            raise DataError(
-                "the arguments are swapped", remedy="the records come first: identify(files, kind)"
-            )
+            remedy = "the records come first: identify(files, kind)"
+            raise DataError("the arguments are swapped", remedy=remedy)
         raise DataError(f"there is no kind {kind!r}", remedy=f"write {', '.join(kinds)}")
     if law is not None and kind != "tissue":
         raise DataError(f"records of kind {kind} have no law", remedy="leave law out")
@@ -88,16 +87,15 @@ def _tissue(files: Sequence[Data], mapping: Columns, law: str | None) -> Finding
     return view_tissue(identify_tissue([read_tissue(file, mapping) for file in files], law))
 
 
-def _actuator(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
+def _actuator(files: Sequence[Data], mapping: Columns, law: None) -> FindingView:
     return view_actuator(identify_actuator([read_actuator(file, mapping) for file in files]))
 
 
-def _delay(files: Sequence[Data], mapping: Columns, law: str | None) -> FindingView:
-    (file,) = files
-    return view_delay(identify_delay(read_signals(file, mapping)))
+def _delay(files: Sequence[Data], mapping: Columns, law: None) -> FindingView:
+    return view_delay(identify_delay(read_signals(files[0], mapping)))
 
 
-_KINDS: Mapping[str, Callable[[Sequence[Data], Columns, str | None], FindingView]] = {
+_KINDS: Mapping[str, Callable[..., FindingView]] = {
     "tissue": _tissue,
     "actuator": _actuator,
     "delay": _delay,
@@ -118,7 +116,6 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
         first=None if result.first is None else checks[id(result.first)],
         synthetic=result.log.source.synthetic,
         facts=run_facts(result, loaded, certificate, reason),
-        page=partial(run_report, result, loaded.spec.name, reason),
     )
 
 

@@ -9,8 +9,6 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import detail, progress, say
 from nrs_design.identification.cli.identify import ColumnMap, read_all
 
@@ -32,17 +30,7 @@ def audit(
         Path | None,
         typer.Option(metavar="CERT", help="Certificate of that spec; without it, none is proved."),
     ] = None,
-    command_limit: Annotated[
-        str | None,
-        typer.Option(
-            metavar="QUANTITY",
-            help="Where the driver saturates, such as '24 V', or a number as logged; default: "
-            "`limits: command` of the spec.",
-        ),
-    ] = None,
     columns: ColumnMap = None,
-    report: ReportTo = None,
-    date: Date = None,
 ) -> Answer:
     """Tell whether a run stayed inside what was proved: times, stiffness, delay, command, force.
 
@@ -55,44 +43,35 @@ def audit(
 
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
-    from nrs_design.identification.reporting.running import run_facts, run_report
-    from nrs_design.identification.running.bounds import (
-        parse_command_limit,
-        proof_of,
-        read_run_bounds,
-    )
+    from nrs_design.identification.reporting.running import run_facts
+    from nrs_design.identification.running.bounds import proof_of, read_run_bounds
     from nrs_design.identification.running.judge import judge_run
     from nrs_design.identification.running.log import read_run
     from nrs_design.identification.write_spec import check_turning
     from nrs_design.spec import read_spec
 
-    outputs = Destinations.checked(None, report, date)
     loaded = read_spec(spec)
     check_turning(loaded.spec, loaded.path)
     bounds = read_run_bounds(loaded)
-    limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
     reason, losable = proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [])
     with progress("judging"):
-        judgement = judge_run(run, bounds, proved=not reason, losable=losable, command_limit=limit)
-    return outputs.deliver(
-        Answer(
-            lambda: run_facts(judgement, loaded, certificate, reason),
-            lambda: _print(judgement, loaded.spec.name, reason),
-            _EXIT[judgement.verdict],
-        ),
-        page=lambda: run_report(judgement, loaded.spec.name, reason),
+        judgement = judge_run(run, bounds, proved=not reason, losable=losable)
+    return Answer(
+        lambda: run_facts(judgement, loaded, certificate, reason),
+        lambda: _print(judgement, loaded.spec.name, reason),
+        _EXIT[judgement.verdict],
     )
 
 
 def _print(judgement: RunJudgement, name: str, reason: str) -> None:
-    from nrs_design.identification.reporting.running import CLAIMS, first_violation, unproved_text
+    from nrs_design.identification.reporting.running import CLAIMS, first_violation
     from nrs_design.identification.reporting.view import SYNTHETIC
 
     if judgement.log.source.synthetic:
         say(SYNTHETIC)
     if reason:
-        say(unproved_text(reason))
+        say(f"UNPROVED SPEC: {reason}; its ranges are only declared.")
     say(f"{name}: {judgement.verdict.upper()}: {CLAIMS[judgement.verdict]}")
     if first := first_violation(judgement):
         say(first)

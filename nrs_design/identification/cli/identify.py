@@ -14,13 +14,17 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
-from nrs_design.cli.printing import detail, insist, progress, say, wants_details
+from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.errors import DataError, SpecError
 from nrs_design.models.contact import LAWS
+from nrs_design.spec.kinds import ANGLE, LENGTH, LEVER_ARM
+from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 if TYPE_CHECKING:
     from nrs_design.identification.reporting.view import FindingView
     from nrs_design.spec import LoadedSpec
+    from nrs_design.spec.spec_document import Merged
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
@@ -32,6 +36,8 @@ WriteTo = Annotated[
     typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
 ]
 
+# In m; longer arms were meant in mm.
+_LONGEST_ARM = 10.0
 # Coverage of the range in a spec.
 Covers = Literal["confidence", "tolerance", "prediction"]
 
@@ -67,17 +73,13 @@ def read_all(
 
 
 def _deliver(
-    outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], str]
+    outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], Merged]
 ) -> Answer:
     """Print and write a result; with doubts, the answer is inconclusive."""
-    result = view.result
-    code = exit_codes.INCONCLUSIVE if result.doubts else exit_codes.PROVED
+    doubts = view.result.doubts
+    code = exit_codes.INCONCLUSIVE if doubts else exit_codes.PROVED
     answer = Answer(lambda: view.document, partial(_show, view), code)
-    return outputs.deliver(answer, view.page, merge, result.doubts, result.caveats)
-
-
-def _warn(text: str) -> None:
-    insist(f"warning: {text}")
+    return outputs.deliver(answer, view.page, merge, doubts)
 
 
 def _show(view: FindingView) -> None:
@@ -148,7 +150,7 @@ def tissue(
     from nrs_design.identification.datasets.records import read_tissue
     from nrs_design.identification.reporting.tissue import view_tissue
     from nrs_design.identification.tissue.identify import identify_tissue
-    from nrs_design.identification.tissue.settings import parse_arm, parse_preload, read_preparation
+    from nrs_design.identification.tissue.trial import read_preparation
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
     outputs = Destinations.checked(write, report, date)
@@ -175,7 +177,7 @@ def tissue(
     return _deliver(
         outputs,
         view_tissue(result, arm),
-        lambda spec: merge_tissue(spec, result, environment, lever_arm, _warn),
+        lambda spec: merge_tissue(spec, result, environment, lever_arm),
     )
 
 
@@ -206,7 +208,7 @@ def actuator(
     with progress("fitting"):
         result = identify_actuator(records)
     view = view_actuator(result)
-    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result, _warn))
+    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result))
 
 
 @identify.command("delay")
@@ -243,3 +245,39 @@ def delay(
     with progress("fitting"):
         result = identify_delay(record)
     return _deliver(outputs, view_delay(result), lambda spec: merge_sampling(spec, result))
+
+
+def parse_arm(text: str | None, *, rotational: bool) -> float | None:
+    """Read a lever arm such as ``0.24 m``; return it in m. Records of a rotation need none."""
+    if text is None:
+        return None
+    arm = _parse("--lever-arm", text, LEVER_ARM)
+    if rotational:
+        raise DataError(
+            "the records are rotational, and a lever arm is given", remedy="remove --lever-arm"
+        )
+    if arm <= 0:
+        raise DataError(f"the lever arm {text!r} is not positive", remedy="write '0.24 m'")
+    if arm > _LONGEST_ARM:
+        raise DataError(
+            f"the lever arm {text!r} is longer than any arm", remedy=f"did you mean '{arm:g} mm'?"
+        )
+    return arm
+
+
+def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] | None:
+    """Read ``--preload``, such as ``1 mm..3 mm``: deflections from the contact, in SI."""
+    if text is None:
+        return None
+    low, dots, high = (part.strip() for part in text.partition(".."))
+    if not dots:
+        high = low
+    kind = (LENGTH, ANGLE)[rotational]
+    return _parse("--preload", low, kind), _parse("--preload", high, kind)
+
+
+def _parse(option: str, text: str, kind: QuantityKind) -> float:
+    try:
+        return parse_quantity(text, kind).si
+    except SpecError as error:
+        raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None

@@ -33,15 +33,11 @@ _FLAT_MOTION = 0.05
 _ROUNDING_UNITS = 8
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TissueRecord:
-    """Reaction of a tissue to a motion."""
+@dataclass(frozen=True, eq=False)
+class AbstractRecord:
+    """What a file says."""
 
     source: Source  # The file
-    motion: Motion  # Time in s and deflection in m (rad)
-    force: Array  # Shape (n,). In N (N m).
-    rotational: bool  # Whether the motion is a rotation about the pivot
-    pauses: str = ""  # What pauses leave out, in words; empty for none
 
     @property
     def name(self) -> str:
@@ -50,10 +46,19 @@ class TissueRecord:
 
 
 @dataclass(frozen=True, eq=False)
-class SignalRecord:
+class TissueRecord(AbstractRecord):
+    """Reaction of a tissue to a motion."""
+
+    motion: Motion  # Time in s and deflection in m (rad)
+    force: Array  # Shape (n,). In N (N m).
+    rotational: bool  # Whether the motion is a rotation about the pivot
+    pauses: str = ""  # What pauses leave out, in words; empty for none
+
+
+@dataclass(frozen=True, eq=False)
+class SignalRecord(AbstractRecord):
     """A command and a measured signal that follows it."""
 
-    source: Source  # The file
     # time, command, output: shape (n,). In s, in the unit of the command, and of a motor in rad or
     # rad/s.
     time: Array
@@ -63,11 +68,6 @@ class SignalRecord:
     unit: str = "rpm"  # Unit of the command: ``rpm``, ``V``, ``A`` or ``counts``
     pauses: str = ""  # What pauses leave out, in words; empty for none
     names: tuple[str, str] = ("command", "output")  # Names of both columns in the file
-
-    @property
-    def name(self) -> str:
-        """File name without its ending."""
-        return self.source.path.stem
 
     @cached_property
     def step(self) -> float:

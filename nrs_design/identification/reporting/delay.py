@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from nrs_design.identification.delay.identify import DelayIdentification
 from nrs_design.identification.reporting.view import (
+    Curve,
     Facts,
     FindingView,
-    draw_fit,
     estimate_numbers,
-    label_of,
     marked,
 )
 from nrs_design.identification.statistics import span
-from nrs_design.reporting.document import Illustration, Section, Table
+from nrs_design.reporting.document import Table
 from nrs_design.reporting.formatting import number
 
 
 def view_delay(result: DelayIdentification) -> FindingView:
     """Return the output of the identification of a delay."""
-    (command, output), (lag, correlation) = result.record.names, result.peak
-    model, step, whole = (
-        result.chosen.follower.name,
-        result.record.step,
-        span(*result.whole_samples),
-    )
+    record, (lag, correlation) = result.record, result.peak
+    command, output = record.names
+    model, whole = result.chosen.follower.name, span(*result.whole_samples)
     direction = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
+    parts = tuple((number(time), str(part)) for time, part in result.parts)
+    curve = (record.time, record.output, result.chosen.fitted)
     return FindingView(
         result,
         kind="delay",
@@ -36,16 +32,16 @@ def view_delay(result: DelayIdentification) -> FindingView:
         facts=_facts(result),
         lines=(
             f"{output} is most like {command} {direction} (correlation {correlation:.3f})",
-            f"delay = {result.samples} samples of {step:.4g} s [95 %]",
+            f"delay = {result.samples} samples of {record.step:.4g} s [95 %]",
             f"delay = {result.delay} s, beside {model}",
             f"whole samples that hold it, and every part of the record: {whole}",
         ),
-        details=(),
         fits=_table(result),
+        blocks=(Table("Delay in parts of the record", ("Middle [s]", "Samples"), parts),),
         title=f"Delay from {command} to {output}",
-        claim=f"{result.samples} samples of {number(step, 4)} s, beside {model}. Whole "
+        claim=f"{result.samples} samples of {number(record.step, 4)} s, beside {model}. Whole "
         f"samples that hold it and every part of the record: {whole}.",
-        sections=lambda: _sections(result),
+        curves=lambda: (Curve(record.name, f"Beside {model}.", output, *curve),),
     )
 
 
@@ -86,14 +82,3 @@ def _facts(result: DelayIdentification) -> Facts:
         ],
         "smooth_between_samples": result.smooth,
     }
-
-
-def _sections(result: DelayIdentification) -> Iterator[Section]:
-    rows = tuple((number(time), str(part)) for time, part in result.parts)
-    parts = Table("Delay in parts of the record", ("Middle [s]", "Samples"), rows)
-    yield Section("Models", (_table(result), parts))
-    record = result.record
-    figure = draw_fit(record.time, record.output, result.chosen.fitted, record.names[1])
-    note = label_of(result.sources)
-    illustration = Illustration("following", "Measured against fitted", note, figure)
-    yield Section("Figures", (illustration,))

@@ -6,23 +6,20 @@ from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
 from nrs_design.identification.reporting.view import (
-    MAX_FIGURES,
+    Curve,
     Facts,
     FindingView,
-    draw_fit,
     estimate_numbers,
-    label_of,
     marked,
 )
 from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue.identify import TissueIdentification
-from nrs_design.identification.tissue.offsets import DRIFT, TARE, ZERO
 from nrs_design.identification.tissue.output_error import RecordFit
-from nrs_design.identification.tissue.pool import ModelFit
-from nrs_design.identification.tissue.tangent import Tangent
+from nrs_design.identification.tissue.pool import ModelFit, Tangent
+from nrs_design.identification.tissue.problem import DRIFT, TARE, ZERO
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Block, Bullets, Illustration, Section, Table
+from nrs_design.reporting.document import Bullets, Table
 from nrs_design.reporting.formatting import number, shortened
 
 T = TypeVar("T")
@@ -39,7 +36,9 @@ def view_tissue(result: TissueIdentification, arm: float | None = None) -> Findi
     """Return the output for a tissue; with a lever arm in m, the law at the pivot, too."""
     model, law = result.chosen, result.chosen.law
     ranges = _parameter_rows(law, model.ranges, result.rotational)
-    values = _parameter_text(_parameter_rows(law, map(str, model.ranges), result.rotational))
+    notes = list(_notes(result, arm))
+    if law.relaxation_time is not None:
+        notes.append(f"the force relaxes in {number(law.relaxation_time)} s at rest")
     return FindingView(
         result,
         kind="tissue",
@@ -50,13 +49,14 @@ def view_tissue(result: TissueIdentification, arm: float | None = None) -> Findi
         lines=(
             result.reason,
             *(f"{_parameter_text([row])} holds {result.covers}" for row in ranges),
-            *_notes(result, arm),
+            *notes,
         ),
         details=_record_texts(result),
         fits=_table(result),
+        blocks=(_estimates(result), *_doubts(result)),
         title=f"Tissue law from {counted(len(result.records), 'record')}",
-        claim=f"{law.formula} with {values}. {result.reason}",
-        sections=lambda: _sections(result, arm),
+        claim=f"{law.formula} with {_parameter_text(ranges)}. {result.reason}",
+        curves=lambda: _curves(result),
     )
 
 
@@ -133,7 +133,7 @@ def _table(result: TissueIdentification) -> Table:
     )
     unit = "N m" if result.rotational else "N"
     columns = ("Law", *records, "BIC - least", "White p", "Doubts")
-    return Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
+    return Table(f"Comparison of laws by RMSE [{unit}] in each record", columns, rows)
 
 
 def _facts(result: TissueIdentification, arm: float | None) -> Facts:
@@ -196,15 +196,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
     }
 
 
-def _sections(result: TissueIdentification, arm: float | None) -> Iterator[Section]:
-    used = Bullets("", _record_texts(result))
-    yield Section("What of the records is used", (used,))
-    yield Section("Comparison of laws", (_table(result), *_doubts(result)))
-    yield Section("Parameters of the chosen law", tuple(_parameters(result, arm)))
-    yield Section("Measured against fitted", tuple(_figures(result)))
-
-
-def _doubts(result: TissueIdentification) -> Iterator[Block]:
+def _doubts(result: TissueIdentification) -> Iterator[Bullets]:
     doubts = tuple(
         f"{model.law.name}: {shortened(model.doubts, 4)}."
         for model in result.models
@@ -214,7 +206,7 @@ def _doubts(result: TissueIdentification) -> Iterator[Block]:
         yield Bullets("Doubts: what the records do not determine", doubts)
 
 
-def _parameters(result: TissueIdentification, arm: float | None) -> Iterator[Block]:
+def _estimates(result: TissueIdentification) -> Table:
     model, law = result.chosen, result.chosen.law
     units = _units(law, result.rotational)
     names = (f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True))
@@ -223,22 +215,13 @@ def _parameters(result: TissueIdentification, arm: float | None) -> Iterator[Blo
         ("pooled", *map(str, model.estimates)),
         (f"range: {result.covers}", *map(str, model.ranges)),
     )
-    yield Table("Estimates [95 % interval]", ("Record", *names), rows)
-    notes = [f"{note[0].upper()}{note[1:].rstrip('.')}." for note in _notes(result, arm)]
-    if law.relaxation_time is not None:
-        notes.append(f"The force relaxes in {number(law.relaxation_time)} s at rest.")
-    if notes:
-        yield Bullets("", tuple(notes))
+    return Table("Estimates of the chosen law [95 % interval]", ("Record", *names), rows)
 
 
-def _figures(result: TissueIdentification) -> Iterator[Illustration]:
-    for number_, fit in enumerate(result.chosen.fits[:MAX_FIGURES], 1):
-        trial = fit.trial
-        label = "Torque [N m]" if result.rotational else "Force [N]"
-        yield Illustration(
-            f"fit-{number_}",
-            fit.record.name,
-            f"{label_of(result.sources)}Fit to this record alone: RMSE {number(fit.rmse)}, "
-            f"whiteness p = {fit.uncertainty.whiteness:.2g}.",
-            draw_fit(trial.motion.time, trial.force, fit.fitted, label, trial.used),
-        )
+def _curves(result: TissueIdentification) -> Iterator[Curve]:
+    label = "Torque [N m]" if result.rotational else "Force [N]"
+    for fit in result.chosen.fits:
+        trial, white = fit.trial, f"whiteness p = {fit.uncertainty.whiteness:.2g}"
+        note = f"Fit to this record alone: RMSE {number(fit.rmse)}, {white}."
+        data = (trial.motion.time, trial.force, fit.fitted, trial.used)
+        yield Curve(fit.record.name, note, label, *data)

@@ -12,7 +12,7 @@ import numpy as np
 from nrs_design import __version__
 from nrs_design.identification.numeric import Array, Flags
 from nrs_design.proof.text import counted
-from nrs_design.reporting.document import Report, Section, Table
+from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.style import BLUE, INK, VERMILLION, legend, new_figure, styled
 
 if TYPE_CHECKING:
@@ -41,11 +41,24 @@ SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 # Records of which figures are drawn.
 MAX_FIGURES = 6
 _FOOTER = "Page of nrs-design. An identification is an estimate, not a proof."
-_FILES = "Data files"
 # Most points of a curve on a page.
 _POINTS = 1500
 _MEASURED = "#7d8894"
 _UNUSED = "#d9b7a0"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A measured and a fitted output over time."""
+
+    title: str  # Name of the record
+    note: str  # What the fit is
+    label: str  # Quantity and unit of the output
+    # time, measured, fitted: shape (n,), time in s.
+    time: Array
+    measured: Array
+    fitted: Array
+    used: Flags | None = None  # Samples that were fitted; None for all
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,12 +71,13 @@ class FindingView:
     reason: str  # Reason of the choice, or the columns
     ranges: Mapping[str, tuple[Estimate, str]]  # The numbers and their units, by name
     facts: Facts  # Facts of this kind of identification
-    lines: Sequence[str]  # For a terminal
-    details: Sequence[str]  # Further lines with ``-v``
-    fits: Table | None  # All fits, where there are several
+    lines: Sequence[str]  # For a terminal, and for the page
     title: str  # Title of the page
     claim: str  # First sentences of the page
-    sections: Callable[[], Iterable[Section]]  # Draws the rest of the page
+    curves: Callable[[], Iterable[Curve]]
+    details: Sequence[str] = ()  # Further lines, of a terminal with ``-v``
+    fits: Table | None = None  # All fits, where there are several
+    blocks: Sequence[Block] = ()  # What a page has besides
 
     @property
     def document(self) -> Facts:
@@ -80,39 +94,41 @@ class FindingView:
 
     def page(self) -> Report:
         """Return the page; the claim begins with what the data are."""
-        result = self.result
+        result, sources = self.result, self.result.sources
+        synthetic = sum(source.synthetic for source in sources)
+        kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
+        # What must stand before anything that comes of synthetic data.
+        label = "SYNTHETIC DATA, made by a simulation and not measured. " * bool(synthetic)
+        files = tuple(
+            (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
+            for source in sources
+        )
+        figures = tuple(
+            Illustration(f"fit-{i}", curve.title, f"{label}{curve.note}", _draw(curve))
+            for i, curve in zip(range(1, MAX_FIGURES + 1), self.curves(), strict=False)
+        )
+        fits = () if self.fits is None else (self.fits,)
         return Report(
             name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
             title=self.title,
             verdict="identified",
-            claim=f"{label_of(result.sources)}{self.claim}",
+            claim=f"{label}{self.claim}",
             remarks=(
                 *(f"Remark: {remark}." for remark in result.remarks),
                 *(f"Doubt: {caveat}." for caveat in result.caveats),
             ),
-            facts=facts_of(result.sources),
-            sections=(*self.sections(), source_section(result.sources)),
+            facts=(
+                ("Data", f"{kind}, {counted(len(sources), 'file')}"),
+                ("Package", f"nrs-design {__version__}"),
+            ),
+            sections=(
+                Section("What was found", (Bullets("", (*self.lines, *self.details)),)),
+                Section("Fits", (*fits, *self.blocks)),
+                Section("Measured against fitted", figures),
+                Section("Data files", (Table("Files", ("File", "Data", "SHA-256"), files),)),
+            ),
             footer=_FOOTER,
         )
-
-
-def facts_of(sources: Sequence[Source]) -> tuple[tuple[str, str], ...]:
-    """Return what stands at the head of a page about data."""
-    synthetic = sum(source.synthetic for source in sources)
-    kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
-    return (
-        ("Data", f"{kind}, {counted(len(sources), 'file')}"),
-        ("Package", f"nrs-design {__version__}"),
-    )
-
-
-def source_section(sources: Iterable[Source]) -> Section:
-    """Return the section that names the files."""
-    rows = tuple(
-        (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
-        for source in sources
-    )
-    return Section(_FILES, (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
 def source_facts(files: Iterable[Source]) -> list[Facts]:
@@ -121,11 +137,6 @@ def source_facts(files: Iterable[Source]) -> list[Facts]:
         {"file": str(file.path), "sha256": file.sha256, "synthetic": file.synthetic}
         for file in files
     ]
-
-
-def label_of(sources: Sequence[Source]) -> str:
-    """Return what must stand before anything that comes of synthetic data."""
-    return "SYNTHETIC DATA, made by a simulation and not measured. " * is_synthetic(sources)
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
@@ -140,32 +151,22 @@ def marked(name: str, *, chosen: bool) -> str:
 
 
 @styled
-def draw_fit(
-    time: Array, measured: Array, fitted: Array, label: str, used: Flags | None = None
-) -> Figure:
-    """Draw a measured and a fitted output over time in s, and their difference below.
-
-    Samples that were not used for the fit are pale.
-    """
-    pick = thinned(len(time))
-    shown = np.ones(len(time), bool)[pick] if used is None else used[pick]
+def _draw(curve: Curve) -> Figure:
+    """Draw both outputs over time, and their difference below; unused samples are pale."""
+    pick, used = slice(None, None, max(1, -(-len(curve.time) // _POINTS))), curve.used
+    shown = np.ones(len(curve.time), bool)[pick] if used is None else used[pick]
     figure = new_figure(4.4)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
-    t, data, curve = time[pick], measured[pick], fitted[pick]
+    t, data, fitted = (a[pick] for a in (curve.time, curve.measured, curve.fitted))
     upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
     if not shown.all():
         upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
-    upper.plot(t, np.where(shown, curve, np.nan), color=BLUE, label="fitted", linewidth=1.4)
-    upper.set_ylabel(label)
-    lower.plot(t[shown], (data - curve)[shown], ".", color=VERMILLION, markersize=2.5)
+    upper.plot(t, np.where(shown, fitted, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.set_ylabel(curve.label)
+    lower.plot(t[shown], (data - fitted)[shown], ".", color=VERMILLION, markersize=2.5)
     lower.axhline(0.0, color=INK, linewidth=0.8)
     # Short enough for its height.
     lower.set_ylabel("Data - fitted")
     lower.set_xlabel("Time [s]")
     legend(figure, upper)
     return figure
-
-
-def thinned(count: int) -> slice:
-    """Return which of many points are drawn."""
-    return slice(None, None, max(1, -(-count // _POINTS)))

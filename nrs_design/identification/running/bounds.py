@@ -12,9 +12,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.proof.evidence import Shows
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
-from nrs_design.spec.exact import parse_exact
-from nrs_design.spec.quantity import parse_quantity
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec
 
 
 class BoundStatus(StrEnum):
@@ -125,25 +123,6 @@ def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
     asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
     covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
     return "", asked or covered
-
-
-def parse_command_limit(text: str, command: str) -> float:
-    """Read where the driver saturates; a bare number is in the unit of the motor's command."""
-    text = text.strip()
-    if text[-1:].isalpha():
-        quantity = parse_quantity(text, kinds.COMMAND)
-        held = kinds.COMMAND.unit_in(quantity.dimension)
-        if held != command:
-            raise DesignError(
-                f"--command-limit {text!r} is in {held}, and the motor of the spec takes {command}",
-                remedy=f"write it in {command}",
-            )
-        limit = quantity.si
-    else:
-        limit = float(parse_exact(text))
-    if limit <= 0:
-        raise DesignError(f"--command-limit {text!r} is not positive", remedy="such as '24 V'")
-    return limit
 
 
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds
+from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, longest_stretch
+from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.rounding import noise_variance
+from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.sector import judge_sector
-from nrs_design.identification.running.signals import (
-    judge_delay,
-    judge_force,
-    judge_jitter,
-    judge_saturation,
-)
 from nrs_design.identification.running.stays import judge_stays
+from nrs_design.identification.statistics import joint_level, span, student_quantile
+from nrs_design.proof.bounds import lower, upper
 
+# Clocks of loop and log differ by less than this part of a period.
+_UNEVEN = 0.01
 _NO_SURFACE = "a log does not say where its surface is"
 _NO_LOSS = "a log does not say whether contact was lost"
 
@@ -47,17 +51,11 @@ class RunJudgement:
 
 
 def judge_run(
-    log: RunLog,
-    bounds: RunBounds,
-    *,
-    proved: bool,
-    losable: bool = False,
-    command_limit: float | None = None,
+    log: RunLog, bounds: RunBounds, *, proved: bool, losable: bool = False
 ) -> RunJudgement:
     """Compare a log with the bounds of a spec, which a valid certificate proves or not.
 
-    A command limit is in units of the command; by default that of the spec. A log whose command is
-    of another kind than the spec's is a `DataError`.
+    A log whose command is of another kind than the spec's is a `DataError`.
     """
     if bounds.command == "rad/s":
         log = log.convert_to_radians()
@@ -76,10 +74,10 @@ def judge_run(
         *tested,
         _judge_contact(bounds, losable=losable if proved else bounds.losable),
         judge_stays(log, bounds),
-        judge_delay(log, bounds),
-        judge_jitter(log, bounds),
-        judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
-        judge_force(log, bounds),
+        _judge_delay(log, bounds),
+        _judge_jitter(log, bounds),
+        _judge_saturation(log, bounds),
+        _judge_force(log, bounds),
         *(
             Check.open(f"preload of {name}", _NO_SURFACE, allowed, bounds.assumed_by)
             for name, allowed in bounds.preloads.items()
@@ -98,3 +96,104 @@ def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> Check:
         basis = "`contact` of the spec, or a certificate, says whether it may be lost"
         return Check.open("contact", _NO_LOSS, "not said", basis)
     return Check.open("contact", _NO_LOSS, "kept all the time", f"assumption of {bounds.source}")
+
+
+def _judge_delay(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge how late the motion follows the command."""
+    seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
+    if "command" not in log.columns or seen is None:
+        missing = "command" if "command" not in log.columns else "angle or velocity"
+        return Check.open("delay", f"no column for {missing}")
+    rows = longest_stretch(log.time)
+    if rows.stop - rows.start < FEWEST_ROWS:
+        return Check.open("delay", f"no {FEWEST_ROWS} rows without a gap")
+    time, sent, moved = log.time[rows], log.columns["command"][rows], log.columns[seen][rows]
+    try:
+        found = identify_delay(
+            SignalRecord(log.source, time - time[0], sent, moved, names=("command", seen))
+        )
+    except DataError as error:
+        return Check.open("delay", error.message)
+    low, high = found.delay.low, found.delay.high
+    if found.untold is not None:
+        return Check.open("delay", found.untold)
+    outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
+    words = f"{found.delay.value:.3g} {outwards} s"
+    if found.doubts:
+        return Check.open("delay", f"not told by this record: {found.doubts[0]}")
+    if bounds.delay is None:
+        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
+    # Beside gaps, only the longest stretch is judged.
+    whole = rows.stop - rows.start == len(log.time)
+    status = BoundStatus.INSIDE if high < bounds.delay and whole else BoundStatus.UNDECIDED
+    first = None
+    if low > bounds.delay:
+        status, first = BoundStatus.OUTSIDE, Violation(log.begin, words)
+    allowed = f"below {bounds.delay:g} s"
+    return Check("delay", status, words, allowed, "delay margin of the design", first)
+
+
+def _judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge how even the steps of time are."""
+    steps = np.diff(log.time)
+    words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
+    if bounds.period is not None:
+        # Rows come at every sample of the loop, or at every second one, and so on.
+        count = max(round(log.step / bounds.period), 1)
+        if abs(log.step - count * bounds.period) > _UNEVEN * bounds.period:
+            words += f": no whole number of periods of {bounds.period:g} s"
+    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
+
+
+def _time_of(bounds: RunBounds) -> str:
+    """Say what time the model knows."""
+    model = "proof" if bounds.proved else "spec"
+    if bounds.period is None:
+        return f"none: the {model} is in continuous time"
+    period_text = f"every {bounds.period:g} s"
+    if bounds.latency:
+        return f"{bounds.latency} from a sample to its command in the {model}, {period_text}"
+    return f"none: the {model} is about a motion without dead time, sampled {period_text}"
+
+
+def _judge_saturation(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge whether the command met the limit of the driver."""
+    limit = bounds.saturates
+    if "command" not in log.columns:
+        return Check.open("saturation", "no column for command")
+    size = np.abs(log.columns["command"])
+    largest = f"largest command {size.max():.5g} {log.command_unit}"
+    if limit is None:
+        unknown = "where the driver saturates is not known: give the spec `limits: command`"
+        return Check.open("saturation", f"{largest}; {unknown}")
+    allowed = f"below {limit:g} {log.command_unit}"
+    rows = np.flatnonzero(size >= limit)
+    if not len(rows):
+        return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.assumed_by)
+    words = f"the command is {log.columns['command'][rows[0]]:.5g} {log.command_unit}"
+    first = Violation(log.begin + float(log.time[rows[0]]), words)
+    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.assumed_by, first)
+
+
+def _judge_force(log: RunLog, bounds: RunBounds) -> Check:
+    """Judge the torque against the limit of the design."""
+    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
+    if bounds.proved:
+        basis += ", not of the proof"
+    torque = log.columns.get("torque")
+    if torque is None and "force" in log.columns and bounds.lever_arm is not None:
+        torque = log.columns["force"] * bounds.lever_arm
+    if torque is None:
+        return Check.open("force", "no column for torque or force", allowed, basis)
+    size = np.abs(torque)
+    largest = f"largest torque {size.max():.4g} N m"
+    # Largest noise of any row, at 95 % for all rows together.
+    noise = student_quantile(len(size), joint_level(len(size)))
+    noise *= float(np.sqrt(noise_variance(torque)))
+    rows = np.flatnonzero(size - noise > bounds.torque)
+    if not len(rows):
+        status = BoundStatus.UNDECIDED if size.max() > bounds.torque else BoundStatus.INSIDE
+        return Check("force", status, f"{largest}, noise up to {noise:.2g} N m", allowed, basis)
+    words = f"the torque is {torque[rows[0]]:.4g} N m"
+    first = Violation(log.begin + float(log.time[rows[0]]), words)
+    return Check("force", BoundStatus.OUTSIDE, largest, allowed, basis, first)

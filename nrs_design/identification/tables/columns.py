@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import pi
 from pathlib import Path
 from types import MappingProxyType
@@ -120,10 +119,6 @@ def _stated_unit(text: str, quantity: str) -> str | None:
     return max(endings, key=len, default=None)
 
 
-# Returns an error about a file.
-Fail = Callable[..., DataError]
-
-
 @dataclass(frozen=True, slots=True)
 class Column:
     """One column of a file: its place, and its factor to SI."""
@@ -141,7 +136,7 @@ def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))
         if not (ours and equals and theirs):
             raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
-        _read_standard_name(ours, DataError, f"--map {entry!r}: ")
+        _read_standard_name(ours, f"--map {entry!r}: ")
         if theirs in mapping or ours in mapping.values():
             raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")
         mapping[theirs] = ours
@@ -160,52 +155,59 @@ def find_columns(
 
     What the user has mapped decides between layouts, then their order.
     """
-    fail = partial(DataError, path=path, line=line)
-    _check_mapped(mapping, header, fail)
+    try:
+        return _find_columns(header, layouts, mapping, optional)
+    except DataError as error:
+        error.path, error.line = path, line
+        raise
+
+
+def _find_columns(
+    header: Sequence[str],
+    layouts: Sequence[tuple[str, ...]],
+    mapping: Mapping[str, str],
+    optional: tuple[str, ...],
+) -> tuple[tuple[str, ...], dict[str, Column]]:
+    for theirs, ours in mapping.items():
+        _check_mapped(theirs, ours, header)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
-    named = {_read_standard_name(ours, fail).quantity for ours in mapping.values()}
+    named = {_read_standard_name(ours).quantity for ours in mapping.values()}
     found: dict[str, Column] = {}
     faults: list[DataError] = []
     for index, text in enumerate(header):
         name = read_name(mapping.get(text, text))
         # A mapped column takes precedence over others with a name of the same quantity.
-        if name is None or name.quantity not in wanted:
+        if name is None or (text not in mapping and name.quantity in named):
             continue
-        if text not in mapping and name.quantity in named:
+        quantity = name.quantity
+        if quantity not in wanted:
             continue
         if not name.is_known:
-            faults.append(_unknown_unit(name, text, "", fail))
+            faults.append(_unknown_unit(name, text))
             # What would be judged must not fall away in silence.
-            if name.quantity in optional:
+            if quantity in optional:
                 raise faults[-1]
-            continue
-        if name.quantity in found:
-            first = found[name.quantity].name
-            raise fail(
-                f"the {name.quantity} is there twice ({first!r} and {text!r})",
-                remedy="rename one of them, or choose with --map "
-                f"{standard_name(name.quantity)}=NAME",
+        elif quantity in found:
+            raise DataError(
+                f"the {quantity} is there twice ({found[quantity].name!r} and {text!r})",
+                remedy=f"rename one of them, or choose with --map {standard_name(quantity)}=NAME",
             )
-        found[name.quantity] = Column(index, text, name.factor, name.read_as)
+        else:
+            found[quantity] = Column(index, text, name.factor, name.read_as)
     for layout in sorted(layouts, key=lambda quantities: len(named - set(quantities))):
         if set(layout) <= found.keys():
             taken = (*layout, *(key for key in optional if key in found))
             return layout, {quantity: found[quantity] for quantity in taken}
-    raise faults[0] if faults else _missing(found, header, layouts, fail)
+    raise faults[0] if faults else _missing(found, header, layouts)
 
 
-def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail) -> None:
-    for theirs, ours in mapping.items():
-        if theirs not in header:
-            near = difflib.get_close_matches(theirs, header, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it has {_header_text(header)}"
-            raise fail(f"there is no column {theirs!r} to map", remedy=hint)
-        _check_stated(theirs, ours, fail)
-
-
-def _check_stated(theirs: str, ours: str, fail: Fail) -> None:
-    """Refuse a mapping whose unit contradicts the name of the column."""
-    name = _read_standard_name(ours, fail)
+def _check_mapped(theirs: str, ours: str, header: Sequence[str]) -> None:
+    """Refuse a mapping of no column, and one whose unit contradicts the name of its column."""
+    if theirs not in header:
+        near = difflib.get_close_matches(theirs, header, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {_header_text(header)}"
+        raise DataError(f"there is no column {theirs!r} to map", remedy=hint)
+    name = _read_standard_name(ours)
     unit = _stated_unit(theirs, name.quantity)
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
@@ -213,41 +215,35 @@ def _check_stated(theirs: str, ours: str, fail: Fail) -> None:
     if unit in UNITS[name.quantity]:
         right = f"{name.quantity}_{unit}"
         remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
-    raise fail(
-        f"--map '{ours}={theirs}': the column {theirs!r} says {unit}, and {ours} is in {name.unit}",
-        remedy=remedy,
-    )
+    says = f"the column {theirs!r} says {unit}, and {ours} is in {name.unit}"
+    raise DataError(f"--map '{ours}={theirs}': {says}", remedy=remedy)
 
 
-def _read_standard_name(text: str, fail: Fail, prefix: str = "") -> Name:
+def _read_standard_name(text: str, prefix: str = "") -> Name:
     """Take a name of ours apart, and check its unit."""
     name = read_name(text)
     if name is None:
-        raise fail(
-            f"{prefix}{text!r} is no column of ours",
-            remedy=f"these are {', '.join(map(standard_name, UNITS))}",
-        )
+        known = ", ".join(map(standard_name, UNITS))
+        raise DataError(f"{prefix}{text!r} is no column of ours", remedy=f"these are {known}")
     if not name.is_known:
-        raise _unknown_unit(name, text, prefix, fail)
+        raise _unknown_unit(name, text, prefix)
     return name
 
 
-def _unknown_unit(name: Name, text: str, prefix: str, fail: Fail) -> DataError:
+def _unknown_unit(name: Name, text: str, prefix: str = "") -> DataError:
     fault = f"has the unit {name.unit!r}" if name.unit else "has no unit"
     units = " or ".join(f"{name.quantity}_{key}" for key in UNITS[name.quantity])
-    return fail(
-        f"{prefix}the column {text!r} {fault}",
-        remedy=f"expected {units}; --map gives a column another name",
-    )
+    remedy = f"expected {units}; --map gives a column another name"
+    return DataError(f"{prefix}the column {text!r} {fault}", remedy=remedy)
 
 
 def _missing(
-    present: Collection[str], header: Sequence[str], layouts: Sequence[tuple[str, ...]], fail: Fail
+    present: Collection[str], header: Sequence[str], layouts: Sequence[tuple[str, ...]]
 ) -> DataError:
     nearest = min(layouts, key=lambda layout: len(set(layout).difference(present)))
     missing = [_called(quantity) for quantity in nearest if quantity not in present]
     expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
-    return fail(
+    return DataError(
         f"the columns {', '.join(missing)} are missing: it has {_header_text(header)}",
         remedy=f"expected {expected}, in these units or others; name foreign columns with --map "
         f"{missing[0]}=NAME",

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from io import StringIO
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, BinaryIO, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from nrs_design.spec.quantity import LARGEST
 
 # A file, or arrays by the names of their columns, such as a DataFrame.
 Data = Path | Mapping[str, Any]
+Layouts = Sequence[tuple[str, ...]]  # Quantities that belong together
 
 MAX_ROWS = 10_000_000
 MAX_LABELS = 1000
@@ -61,34 +62,26 @@ class MeasurementTable:
 
 
 def read_table(
-    data: Data,
-    layouts: Sequence[tuple[str, ...]],
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...] = (),
+    data: Data, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...] = ()
 ) -> MeasurementTable:
     """Read the columns of one of several layouts from a text with a line of names, or from arrays.
 
-    A layout is of quantities that belong together, see `names.UNITS`; a mapping leads from a name
+    A layout is of quantities that belong together, see `columns.UNITS`; a mapping leads from a name
     in the file to ours; optional quantities are taken where they are there.
     """
     if not isinstance(data, Path):
         table = _read_arrays(data, layouts, mapping, optional)
+    elif data.is_dir():
+        raise DataError("is a folder", path=data, remedy="name files of data")
     else:
         try:
-            if data.is_dir():
-                raise DataError("is a folder", path=data, remedy="name files of data")
             with open_regular(data) as file:
-                table = _read(file, data, layouts, mapping, optional)
+                raw = file.read(_LARGEST_FILE + 1)
         except OSError as error:
-            raise DataError(
-                f"cannot be read ({error.strerror})", path=data, remedy="check the name"
-            ) from error
-    _check_sizes(table)
-    return table
-
-
-def _check_sizes(table: MeasurementTable) -> None:
-    """Refuse values that are not finite, or whose squares, or their squares, leave the floats."""
+            message = f"cannot be read ({error.strerror})"
+            raise DataError(message, path=data, remedy="check the name") from error
+        table = _read(raw, data, layouts, mapping, optional)
+    # Refuse values that are not finite, or whose squares, or their squares, leave the floats.
     for quantity, values in table.values.items():
         column = table.columns[quantity]
         bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
@@ -96,13 +89,11 @@ def _check_sizes(table: MeasurementTable) -> None:
             size = f"{column.name} is {values[bad[0]] / column.factor:.4g}"
             message = f"{size}: no sensor has such a value"
             table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
+    return table
 
 
 def _read_arrays(
-    data: Mapping[str, Any],
-    layouts: Sequence[tuple[str, ...]],
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...],
+    data: Mapping[str, Any], layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
     arrays = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
     layout, columns = find_columns([*arrays], layouts, mapping, _ARRAYS, None, optional)
@@ -111,9 +102,8 @@ def _read_arrays(
     for quantity, column in columns.items():
         raw = arrays[column.name]
         if raw.ndim != 1 or len(raw) != len(next(iter(arrays.values()))):
-            raise DataError(
-                f"{column.name} is no column of one length", remedy="give arrays of shape (n,)"
-            )
+            message = f"{column.name} is no column of one length"
+            raise DataError(message, remedy="give arrays of shape (n,)")
         try:
             numbers = raw.astype(float)
         except ValueError:
@@ -126,45 +116,44 @@ def _read_arrays(
 
 
 def _read(
-    file: BinaryIO,
-    path: Path,
-    layouts: Sequence[tuple[str, ...]],
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...],
+    raw: bytes, path: Path, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
-    raw = file.read(_LARGEST_FILE + 1)
     if len(raw) > _LARGEST_FILE:
         raise DataError("is larger than 512 MiB", path=path, remedy="record more slowly")
     lines = _lines(raw, path)
     head = list(islice(lines, _PREAMBLE))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
-    header = _read_header(head, path, example)
-    layout, columns = find_columns(header.names, layouts, mapping, path, header.line, optional)
+    at, separator, names = _read_header(head, path, example)
+    layout, columns = find_columns(names, layouts, mapping, path, at, optional)
     cells, numbers = _Cells(path), array("d")
-    for line, row in _rows(chain(head[header.line :], lines), header, path):
-        numbers.extend([cells.number(c, row[c.index].strip(), line) for c in columns.values()])
+    for line, text in _filled(enumerate(chain(head[at:], lines), at + 1), path):
+        if line - at > MAX_ROWS:
+            message = f"has more than {MAX_ROWS} rows"
+            raise DataError(message, path=path, remedy="record more slowly")
+        row = _split(text, separator, path, line)
+        if len(row) != len(names):
+            raise DataError(
+                f"the row has {len(row)} values, the header {len(names)}",
+                path=path,
+                line=line,
+                remedy="complete the row; write numbers with a decimal point, not a comma",
+            )
+        numbers.extend([cells.number(c, row[c.index], line) for c in columns.values()])
+    factors = np.array([column.factor for column in columns.values()])
     # Values beyond the floats are refused with the other sizes.
     with np.errstate(over="ignore"):
-        scaled = np.reshape(numbers, (-1, len(columns))).T * np.array(
-            [[column.factor] for column in columns.values()]
-        )
-    values = dict(zip(columns, scaled, strict=True))
+        scaled = np.reshape(numbers, (-1, len(columns))).T * factors[:, None]
     synthetic = any(text[:1] in _COMMENT and "synthetic" in text.lower() for text in head)
     source = Source(path, hashlib.sha256(raw).hexdigest(), synthetic)
-    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header.line + 1)
+    values = dict(zip(columns, scaled, strict=True))
+    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), at + 1)
 
 
-@dataclass(frozen=True, slots=True)
-class _Header:
-    """How a text file is to be read."""
+def _read_header(lines: Sequence[str], path: Path, example: str) -> tuple[int, str, list[str]]:
+    """Return line, separator and names of the columns; the separator is a blank for any number.
 
-    names: list[str]  # Names of the columns
-    separator: str  # Between cells; a blank for any number of them
-    line: int  # Line of the names
-
-
-def _read_header(lines: Sequence[str], path: Path, example: str) -> _Header:
-    """Take the first line that is no comment, or the comment right above bare numbers."""
+    They are in the first line that is no comment, or in the comment right above bare numbers.
+    """
     at = next((at for at, text in enumerate(lines) if text and text[0] not in _COMMENT), None)
     if at is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
@@ -178,7 +167,7 @@ def _read_header(lines: Sequence[str], path: Path, example: str) -> _Header:
             )
         at -= 1
     text = lines[at].lstrip(f"{_COMMENT} ")
-    return _Header(_split(text, _separator(text), path, at + 1), _separator(text), at + 1)
+    return at + 1, _separator(text), _split(text, _separator(text), path, at + 1)
 
 
 def _separator(text: str) -> str:
@@ -190,9 +179,8 @@ def _split(text: str, separator: str, path: Path, line: int) -> list[str]:
     try:
         row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [""])
     except csv.Error as error:
-        raise DataError(
-            f"the line is no CSV ({error})", path=path, line=line, remedy="save the file as CSV"
-        ) from None
+        message = f"the line is no CSV ({error})"
+        raise DataError(message, path=path, line=line, remedy="save the file as CSV") from None
     return [cell.strip() for cell in row]
 
 
@@ -208,9 +196,8 @@ def _lines(raw: bytes, path: Path) -> Iterator[str]:
     """Yield the lines of a text."""
     if b"\0" in raw:
         line = raw.count(b"\n", 0, raw.index(b"\0")) + 1
-        raise DataError(
-            "is no text in UTF-8", path=path, line=line, remedy="save its columns as CSV"
-        )
+        remedy = "save its columns as CSV"
+        raise DataError("is no text in UTF-8", path=path, line=line, remedy=remedy)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -219,28 +206,16 @@ def _lines(raw: bytes, path: Path) -> Iterator[str]:
     return (line.strip("\r\n ") for line in StringIO(text))
 
 
-def _rows(lines: Iterable[str], header: _Header, path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield line number and cells of each row; every row has as many cells as the header."""
-    width, empty = len(header.names), 0
-    for line, text in enumerate(lines, header.line + 1):
+def _filled(lines: Iterable[tuple[int, str]], path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the lines with a row; empty ones may be at the end only."""
+    empty = 0
+    for line, text in lines:
         if not text:
             empty = empty or line
-            continue
-        if empty:
+        elif empty:
             raise DataError("the row is empty", path=path, line=empty, remedy="remove it")
-        if line - header.line > MAX_ROWS:
-            raise DataError(
-                f"has more than {MAX_ROWS} rows", path=path, remedy="record more slowly"
-            )
-        cells = _split(text, header.separator, path, line)
-        if len(cells) != width:
-            raise DataError(
-                f"the row has {len(cells)} values, the header {width}",
-                path=path,
-                line=line,
-                remedy="complete the row; write numbers with a decimal point, not a comma",
-            )
-        yield line, cells
+        else:
+            yield line, text
 
 
 @dataclass(slots=True)

@@ -9,12 +9,7 @@ import numpy as np
 from nrs_design.identification.datasets.records import doubt_step
 from nrs_design.identification.numeric import Array, column_sizes
 from nrs_design.identification.rounding import rounding_of_velocity
-from nrs_design.identification.statistics import (
-    WHITE,
-    Uncertainty,
-    ljung_box,
-    student_quantile,
-)
+from nrs_design.identification.statistics import WHITE, Uncertainty, ljung_box, student_quantile
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw
 from nrs_design.models.contact.law import DAMPING, STIFFNESS

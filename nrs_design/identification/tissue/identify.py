@@ -8,8 +8,13 @@ from dataclasses import dataclass
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.tables.table import Source
-from nrs_design.identification.tissue.pool import ModelFit, fit_model
-from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
+from nrs_design.identification.tissue.pool import (
+    ModelFit,
+    Tangent,
+    check_preload,
+    fit_model,
+    tangent_of,
+)
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import LAWS, AbstractNonlinearLaw, HuntCrossley
 from nrs_design.progress import Progress, silent

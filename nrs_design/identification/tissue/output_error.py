@@ -20,8 +20,7 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 from nrs_design.identification.tissue.doubts import doubts, reaches_zero
-from nrs_design.identification.tissue.offsets import place_offsets
-from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point, box
+from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point, box, place_offsets
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
 

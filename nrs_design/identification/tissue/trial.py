@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Literal
 
 import numpy as np
@@ -19,6 +21,7 @@ from nrs_design.identification.tissue.contact import (
     surface,
 )
 from nrs_design.models.contact import Motion
+from nrs_design.named_values import read_named_values
 from nrs_design.proof.text import counted
 
 FEWEST = 50
@@ -44,6 +47,39 @@ class Preparation:
     # Detect air, or treat the whole record as in contact.
     contact: Literal["auto", "given"] = "auto"
     negate: bool = False  # Change the sign of the force
+
+
+def read_preparation(entries: Iterable[str]) -> Preparation:
+    """Read how records are prepared; the settings are the fields of `Preparation`.
+
+    ``start=S``, ``end=S``, ``contact=auto|given``, ``negate=true``.
+    """
+    readers: dict[str, Callable[[str], object]] = {
+        "start": _seconds,
+        "end": _seconds,
+        "contact": _out_of("auto", "given"),
+        "negate": lambda text: _out_of("true", "false")(text) == "true",
+    }
+    return Preparation(**read_named_values(entries, readers, "a record"))
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise ValueError("write seconds from the beginning of the record, such as 2.5")
+    return value
+
+
+def _out_of(*choices: str) -> Callable[[str], str]:
+    def read(text: str) -> str:
+        if text not in choices:
+            raise ValueError(f"write one of {', '.join(choices)}")
+        return text
+
+    return read
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,60 +7,46 @@ from typing import Any
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.cli.tables import print_table
-
-_COLUMNS = {
-    "arm_mass": ("M_c [g]", 1e3),
-    "coupler_mass": ("M_b [g]", 1e3),
-    "total_mass": ("M_a [g]", 1e3),
-    "total_distance": ("B_a [mm]", 1e3),
-    "stiffness": ("k [N/mm]", 1e-3),
-}
+from nrs_design.cli.tables import print_blocks, print_table
 
 
 @command("robot-balance")
-def balance(
-    spec: SpecFile,
-) -> Answer:
+def balance(spec: SpecFile) -> Answer:
     """Compute the passive balance, and the torque that remains over the workspace.
 
     Example: nrs-design robot balance specs/robots/neuroboscope.nrs.yaml
     """
+    import numpy as np
+
     from nrs_design.robot.models.balance import design_balance, examine_balance
+    from nrs_design.robot.models.vectors import root_mean_square
     from nrs_design.robot.pipeline import run_robot
+    from nrs_design.robot.reporting.robot import balance_table
 
     loaded, robot_spec, robot = run_robot(spec)
     wanted = design_balance(robot_spec, robot)
-    torques = examine_balance(robot, wanted)
+    without, left = (
+        {"rms": root_mean_square(t).tolist(), "largest": np.abs(t).max(axis=0).tolist()}
+        for t in examine_balance(robot, wanted)
+    )
     content: dict[str, Any] = {
         "tilt": wanted.tilt,
         "left": asdict(wanted.left),
         "right": asdict(wanted.right),
-        "without_balance": torques.summary(torques.gravity),
-        "with_balance": torques.summary(torques.residual),
+        "without_balance": without,
+        "with_balance": left,
         "units": {"mass": "kg", "distance": "m", "stiffness": "N/m", "torque": "N*m"},
     }
-    return Answer(lambda: loaded.facts | content, lambda: _print(content))
 
+    def show() -> None:
+        print_blocks(loaded.spec.name, [balance_table(loaded, wanted)])
+        print_table(
+            "",
+            ["static torque of theta1, theta2, theta3 [N m]", "root mean square", "largest"],
+            [
+                [name, *(", ".join(f"{n:.3f}" for n in torque[key]) for key in torque)]
+                for name, torque in (("without balance", without), ("with balance", left))
+            ],
+        )
 
-def _print(content: dict[str, Any]) -> None:
-    print_table(
-        "",
-        ["leg", *(title for title, _ in _COLUMNS.values())],
-        [
-            [leg, *(f"{factor * content[leg][key]:.5g}" for key, (_, factor) in _COLUMNS.items())]
-            for leg in ("left", "right")
-        ],
-    )
-    print_table(
-        "",
-        ["static torque of theta1, theta2, theta3 [N m]", "root mean square", "largest"],
-        [
-            [name.replace("_", " "), *(_list(content[name][key]) for key in ("rms", "largest"))]
-            for name in ("without_balance", "with_balance")
-        ],
-    )
-
-
-def _list(numbers: list[float]) -> str:
-    return ", ".join(f"{number:.3f}" for number in numbers)
+    return Answer(lambda: loaded.facts | content, show)

@@ -10,12 +10,9 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import (
-    JOINTS,
-    ONE,
-    POSE,
     Acceleration,
     Pose,
-    Tables,
+    Three,
     Tilt,
     Velocity,
     print_quantities,
@@ -26,20 +23,19 @@ from nrs_design.robot.cli.options import (
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot
 
-TABLES: Tables = {
-    POSE: {"pose": "pose [rad, rad, m]"},
-    JOINTS: {
-        "velocity": "velocity [rad/s]",
-        "acceleration": "acceleration [rad/s^2]",
-        "M": ("M [kg m^2]", JOINTS),
-        "C": ("C [N m s/rad]", JOINTS),
-        "G": "G [N m]",
-        "Ms": ("Ms [kg m^2]", JOINTS),
-        "Gs": "Gs [N m]",
-        "torque": "torque [N m]",
-        "shares_by_joint": "share of the torque [1]",
-    },
-    ONE: {"base_tilt": "tilt of the base [rad]", "mean_shares": "mean share of the torque [1]"},
+_LABELS = {
+    "pose": "pose phi, psi, d [rad, rad, m]",
+    "velocity": "joint velocities [rad/s]",
+    "acceleration": "joint accelerations [rad/s^2]",
+    "M": "M [kg m^2]",
+    "C": "C [N m s/rad]",
+    "G": "G [N m]",
+    "Ms": "Ms [kg m^2]",
+    "Gs": "Gs [N m]",
+    "torque": "joint torques [N m]",
+    "shares_by_joint": "share of the torque of each joint [1]",
+    "base_tilt": "tilt of the base [rad]",
+    "mean_shares": "mean share of the torque [1]",
 }
 
 
@@ -68,41 +64,27 @@ def dynamics(
     if pose is None:
         content |= _shares(robot)
     else:
-        content |= _at_pose(
-            robot,
-            read_pose(pose, robot),
-            three_numbers(velocity or "0,0,0", "--velocity"),
-            three_numbers(acceleration or "0,0,0", "--acceleration"),
-        )
+        motion = (velocity or "0,0,0", "--velocity"), (acceleration or "0,0,0", "--acceleration")
+        content |= _at_pose(robot, read_pose(pose, robot), *(three_numbers(*m) for m in motion))
     facts = loaded.facts | content
-    return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
+    return Answer(lambda: facts, lambda: print_quantities(content, _LABELS))
 
 
-def _at_pose(
-    robot: Robot,
-    pose: tuple[float, float, float],
-    velocity: tuple[float, float, float],
-    acceleration: tuple[float, float, float],
-) -> dict[str, Any]:
+def _at_pose(robot: Robot, pose: Three, velocity: Three, acceleration: Three) -> dict[str, Any]:
+    from nrs_design.robot.models import dynamics as full
     from nrs_design.robot.models.correction import simplified_dynamics
-    from nrs_design.robot.models.dynamics import (
-        coriolis_matrix,
-        gravity_torque,
-        inverse_dynamics,
-        mass_matrix,
-    )
 
     simplified = simplified_dynamics(robot, pose)
     return {
         "pose": list(pose),
         "velocity": list(velocity),
         "acceleration": list(acceleration),
-        "M": mass_matrix(robot, pose).tolist(),
-        "C": coriolis_matrix(robot, pose, velocity).tolist(),
-        "G": gravity_torque(robot, pose).tolist(),
+        "M": full.mass_matrix(robot, pose).tolist(),
+        "C": full.coriolis_matrix(robot, pose, velocity).tolist(),
+        "G": full.gravity_torque(robot, pose).tolist(),
         "Ms": simplified.Ms.tolist(),
         "Gs": simplified.Gs.tolist(),
-        "torque": inverse_dynamics(robot, pose, velocity, acceleration).tolist(),
+        "torque": full.inverse_dynamics(robot, pose, velocity, acceleration).tolist(),
         "units": {"M": "kg*m^2", "C": "N*m*s/rad", "G": "N*m", "torque": "N*m", "pose": "rad, m"},
     }
 

@@ -8,41 +8,24 @@ import typer
 
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
-from nrs_design.robot.cli.options import (
-    JOINTS,
-    LEGS,
-    ONE,
-    POSE,
-    Pose,
-    Tables,
-    lists,
-    print_quantities,
-    read_pose,
-    three_numbers,
-)
+from nrs_design.robot.cli.options import Pose, lists, print_quantities, read_pose, three_numbers
 
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot
 
-TABLES: Tables = {
-    POSE: {
-        "pose": "pose [rad, rad, m]",
-        "inverse_jacobian": ("inverse Jacobian", JOINTS),
-    },
-    ("theta_x", "theta_y", "d"): {"theta_xy_d": "orientation [rad, rad, m]"},
-    JOINTS: {
-        "joints": "joint angles [rad]",
-        "jacobian": ("Jacobian", POSE),
-        "joint_low": "lowest angle [rad]",
-        "joint_high": "highest angle [rad]",
-        "largest_joint_velocity": "largest velocity [rad/s]",
-        "largest_joint_acceleration": "largest acceleration [rad/s^2]",
-    },
-    LEGS: {
-        "reach_margin": "reach margin [m]",
-        "coupler_margin": "coupler margin [1]",
-    },
-    ONE: {"reachable_share": "reachable share of the workspace [1]"},
+_LABELS = {
+    "pose": "pose phi, psi, d [rad, rad, m]",
+    "inverse_jacobian": "inverse Jacobian",
+    "theta_xy_d": "orientation theta_x, theta_y, d [rad, rad, m]",
+    "joints": "joint angles theta1, theta2, theta3 [rad]",
+    "jacobian": "Jacobian",
+    "joint_low": "lowest joint angles [rad]",
+    "joint_high": "highest joint angles [rad]",
+    "largest_joint_velocity": "largest joint velocities [rad/s]",
+    "largest_joint_acceleration": "largest joint accelerations [rad/s^2]",
+    "reach_margin": "reach margin of left, right, middle leg [m]",
+    "coupler_margin": "coupler margin of left, right, middle leg [1]",
+    "reachable_share": "reachable share of the workspace [1]",
 }
 
 
@@ -73,27 +56,27 @@ def kinematics(
     else:
         content = _workspace(robot)
     facts = loaded.facts | content
-    return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
+    return Answer(lambda: facts, lambda: print_quantities(content, _LABELS))
 
 
 def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
+    from nrs_design.robot.models.geometry import reach_margin
     from nrs_design.robot.models.kinematics import (
+        coupler_margin,
         inverse_jacobian,
         inverse_kinematics,
         jacobian,
         orientation,
-        singularity_margins,
     )
 
-    margins = singularity_margins(robot, pose)
     return {
         "pose": list(pose),
         "joints": inverse_kinematics(robot, pose).tolist(),
         "theta_xy_d": orientation(pose).tolist(),
         "jacobian": jacobian(robot, pose).tolist(),
         "inverse_jacobian": inverse_jacobian(robot, pose).tolist(),
-        "reach_margin": margins.reach.tolist(),
-        "coupler_margin": margins.coupler.tolist(),
+        "reach_margin": reach_margin(robot, pose).tolist(),
+        "coupler_margin": coupler_margin(robot, pose).tolist(),
         "units": {"angles": "rad", "lengths": "m", "coupler_margin": "1"},
     }
 
@@ -102,11 +85,11 @@ def _workspace(robot: Robot) -> dict[str, Any]:
     from nrs_design.robot.models.workspace import joint_peaks, survey_workspace, workspace_grid
 
     survey = survey_workspace(robot)
-    peaks = joint_peaks(robot, workspace_grid(robot))
+    velocity, acceleration = joint_peaks(robot, workspace_grid(robot))
     return {
         "reachable_share": survey.reachable,
         **lists(survey, "joint_low", "joint_high", "reach_margin", "coupler_margin"),
-        "largest_joint_velocity": peaks.velocity.tolist(),
-        "largest_joint_acceleration": peaks.acceleration.tolist(),
+        "largest_joint_velocity": velocity.tolist(),
+        "largest_joint_acceleration": acceleration.tolist(),
         "units": {"angles": "rad", "lengths": "m", "velocity": "rad/s", "acceleration": "rad/s^2"},
     }

@@ -1,4 +1,4 @@
-"""Options that several robot commands share, and what they do with them."""
+"""Shared options of the robot commands, and their parsers."""
 
 from __future__ import annotations
 
@@ -20,8 +20,7 @@ Pose = Annotated[
     typer.Option("--pose", metavar="PHI,PSI,D", help="Pose in rad, rad and m, as in 0,0,0.2."),
 ]
 Velocity = Annotated[
-    str | None,
-    typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s."),
+    str | None, typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s.")
 ]
 Acceleration = Annotated[
     str | None,
@@ -32,11 +31,13 @@ Tilt = Annotated[
     typer.Option("--tilt", metavar="DEG", help="Tilt of the base in degrees, not the spec's."),
 ]
 
-# So many times the depth of the workspace, and another unit is meant.
+Three = tuple[float, float, float]
+
+# A depth beyond this multiple of the workspace is taken for another unit.
 DOUBTFUL = 10
 
 
-def three_numbers(text: str, option: str) -> tuple[float, float, float]:
+def three_numbers(text: str, option: str) -> Three:
     """Read ``1,2,3``."""
     try:
         numbers = [float(part) for part in text.split(",")]
@@ -50,7 +51,7 @@ def three_numbers(text: str, option: str) -> tuple[float, float, float]:
     return numbers[0], numbers[1], numbers[2]
 
 
-def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
+def read_pose(text: str, robot: Robot) -> Three:
     """Read a pose, and doubt one that is in other units than rad and m."""
     phi, psi, d = three_numbers(text, "--pose")
     for name, angle in (("phi", phi), ("psi", psi)):
@@ -68,37 +69,23 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
     return phi, psi, d
 
 
-# What the numbers of a row belong to.
-POSE = ("phi", "psi", "d")
-JOINTS = ("theta1", "theta2", "theta3")
-LEGS = ("left leg", "right leg", "middle leg")
-ONE = ("value",)
-
-# What stands in a row: a name with its unit, and for a matrix what each of its rows belongs to.
-RowLabel = str | tuple[str, Sequence[str]]
-# For the headings of some columns, the names whose numbers stand below them.
-Tables = Mapping[Sequence[str], Mapping[str, RowLabel]]
-
-
-def print_quantities(content: Mapping[str, Any], tables: Tables) -> None:
-    """Print numbers, rows of three and matrices of the content, all in SI units."""
-    for columns, labels in tables.items():
-        rows = [
-            [title, *(f"{number:.8g}" for number in numbers)]
-            for name, label in labels.items()
-            if name in content
-            for title, numbers in _rows(label, content[name])
-        ]
-        if rows:
-            print_table("", ["SI units", *columns], rows)
+def print_quantities(content: Mapping[str, Any], labels: Mapping[str, str]) -> None:
+    """Print the numbers, rows of three and matrices that have a label, all in SI units."""
+    rows = [
+        [title, *(f"{number:.8g}" for number in numbers), *[""] * (3 - len(numbers))]
+        for name, label in labels.items()
+        if name in content
+        for title, numbers in _rows(label, content[name])
+    ]
+    print_table("", ["SI units", "1", "2", "3"], rows)
 
 
-def _rows(label: RowLabel, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
-    if isinstance(label, tuple):
-        yield from ((f"{label[0]}: {name}", row) for name, row in zip(label[1], value, strict=True))
-    elif isinstance(value, dict):
+def _rows(label: str, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
+    if isinstance(value, dict):
         for key, inner in value.items():
             yield from _rows(f"{label}: {key}", inner)
+    elif isinstance(value, list) and isinstance(value[0], list):
+        yield from ((f"{label}, row {i}", row) for i, row in enumerate(value, 1))
     else:
         yield label, value if isinstance(value, list) else [value]
 

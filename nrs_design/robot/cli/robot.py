@@ -17,7 +17,5 @@ robot = typer.Typer(
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
     epilog="The page of a robot: nrs-design report SPEC.",
 )
-# A new capability of the robot adds its command here.
-COMMANDS = (check, kinematics, dynamics, correction, balance, track)
-for one in COMMANDS:
+for one in (check, kinematics, dynamics, correction, balance, track):
     robot.command(one.__name__)(one)

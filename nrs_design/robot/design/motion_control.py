@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -69,45 +70,54 @@ class LawState:
     error: Array | None = None
     load: LoadTerms | None = None  # The model at the last tick
 
-    def error_rate(self, error: Array, period: float) -> Array:
-        """Return the backward difference of the error in rad/s; zero at the first tick."""
-        return error * 0.0 if self.error is None else (error - self.error) / period
+
+@dataclass(frozen=True, kw_only=True)
+class AbstractMotionLaw(ABC):
+    """A law that follows joint angles by their encoders."""
+
+    period: float  # Time between two ticks in s
+    encoder_ratio: float  # Turns n of the encoder per turn of the joint
+    command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
+
+    @abstractmethod
+    def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
+        """Return the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
+
+        Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
+        """
+
+    def errors(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, Array]:
+        """Return the error in encoder coordinates in rad, and its rate in rad/s."""
+        error = self.encoder_ratio * reference.position - angle
+        # A backward difference; zero at the first tick.
+        return error, error * 0.0 if state.error is None else (error - state.error) / self.period
 
 
-@dataclass(frozen=True, slots=True)
-class ComputedTorque:
+@dataclass(frozen=True, kw_only=True)
+class ComputedTorque(AbstractMotionLaw):
     """Torque for a wanted acceleration, as a command (thesis 4.16 to 4.18, corrected).
 
     ``a = theta_des'' + Kd e' + Kp e`` and ``delta = gradient (K_corr Ms a/(N n) + K_corr Gs/N)``,
     with e and a in encoder coordinates, n turns of the encoder and N of the motor per turn of the
-    joint. The acceleration in 4.16 is that of the reference.
-
-    The law of the thesis knows the robot and not its motors.
+    joint. The acceleration in 4.16 is that of the reference. The law of the thesis knows the robot
+    and not its motors.
     """
 
-    # Kp, Kd: in 1/s^2 and 1/s (thesis 4.15).
-    Kp: float
-    Kd: float
-    period: float  # Time between two ticks in s
-    encoder_ratio: float  # Turns n of the encoder per turn of the joint
-    command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
+    Kp: float  # In 1/s^2 (thesis 4.15)
+    Kd: float  # In 1/s
     load: LoadModel  # Inertia and weight
 
     def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
-        """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
-
-        Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
-        """
-        error = self.encoder_ratio * reference.position - angle
-        feedback = self.Kp * error + self.Kd * state.error_rate(error, self.period)
-        wanted = reference.acceleration + feedback / self.encoder_ratio
+        """Return the commands and the next state."""
+        error, rate = self.errors(state, reference, angle)
+        wanted = reference.acceleration + (self.Kp * error + self.Kd * rate) / self.encoder_ratio
         load = self.load.follow(angle, state.load)
         torque = (load.inertia @ wanted[..., None])[..., 0] + load.gravity
         return self.command_per_torque * torque, LawState(error, load)
 
 
-@dataclass(frozen=True, slots=True)
-class IndependentJoint:
+@dataclass(frozen=True, kw_only=True)
+class IndependentJoint(AbstractMotionLaw):
     """PD on each joint (thesis 4.3), with or without its weight fed forward.
 
     ``delta = Kp e + Kd e' + (gradient/N) K_corr Gs``, the error e in encoder coordinates. The
@@ -117,27 +127,17 @@ class IndependentJoint:
 
     # Gains in rpm/rad and rpm s/rad, as on the robot in single precision.
     motion: ProportionalDerivative
-    period: float  # Time between two ticks in s
-    encoder_ratio: float  # Turns of the encoder per turn of the joint
-    command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
-    # Where the weight comes from. None feeds nothing forward, for the balanced robot (4.36).
+    # Source of the weight; None without feedforward, for the balanced robot (4.36).
     load: LoadModel | None
 
     def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
-        """Compute the commands of one tick in rpm, shape (n, 3), and what the next tick needs.
-
-        Encoder angles are in rad, shape (n, 3); the first state is `LawState()`.
-        """
-        error = self.encoder_ratio * reference.position - angle
-        rate = state.error_rate(error, self.period)
+        """Return the commands and the next state."""
+        error, rate = self.errors(state, reference, angle)
         command = float(self.motion.Kp) * error + float(self.motion.Kd) * rate
         if self.load is None:
             return command, LawState(error)
         load = self.load.follow(angle, state.load)
         return command + self.command_per_torque * load.gravity, LawState(error, load)
-
-
-MotionLaw = ComputedTorque | IndependentJoint
 
 
 def control_of(spec: RobotSpec) -> RobotControlSpec:
@@ -163,28 +163,24 @@ def design_load_model(spec: RobotSpec, robot: Robot) -> LoadModel:
 
 def design_computed_torque(spec: RobotSpec, load: LoadModel) -> ComputedTorque:
     """Choose the error dynamics by damping ratio and settling time (thesis 4.14 and 4.15)."""
-    control, drive = control_of(spec), build_drive(spec.drive)
-    wn = _root_locus(spec).natural_frequency
-    return ComputedTorque(
-        Kp=wn**2,
-        Kd=2 * float(control.motion_loop.damping_ratio) * wn,
-        period=control.sample_period.si,
-        encoder_ratio=drive.encoder_ratio,
-        command_per_torque=1 / drive.torque_per_command,
-        load=load,
-    )
+    wn, zeta = _root_locus(spec).natural_frequency, control_of(spec).motion_loop.damping_ratio
+    return ComputedTorque(Kp=wn**2, Kd=2 * float(zeta) * wn, load=load, **_drive_numbers(spec))
 
 
 def design_independent_joint(spec: RobotSpec, load: LoadModel | None) -> IndependentJoint:
     """Choose the PD by root locus, or take the one that the spec gives (thesis 4.30)."""
-    control, drive = control_of(spec), build_drive(spec.drive)
-    return IndependentJoint(
-        motion=_proportional_derivative(spec),
-        period=control.sample_period.si,
-        encoder_ratio=drive.encoder_ratio,
-        command_per_torque=1 / drive.torque_per_command,
-        load=load,
-    )
+    motion = _proportional_derivative(spec)
+    return IndependentJoint(motion=motion, load=load, **_drive_numbers(spec))
+
+
+def _drive_numbers(spec: RobotSpec) -> dict[str, float]:
+    """Return sample period and drive constants of both laws."""
+    drive = build_drive(spec.drive)
+    return {
+        "period": control_of(spec).sample_period.si,
+        "encoder_ratio": drive.encoder_ratio,
+        "command_per_torque": 1 / drive.torque_per_command,
+    }
 
 
 def _proportional_derivative(spec: RobotSpec) -> ProportionalDerivative:

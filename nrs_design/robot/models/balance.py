@@ -11,14 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from nrs_design.errors import DesignError
 from nrs_design.robot.models.body import MASSLESS, point_mass
 from nrs_design.robot.models.dynamics import gravity_torque
 from nrs_design.robot.models.robot import Leg, Robot
-from nrs_design.robot.models.vectors import Array, root_mean_square
+from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import reachable_poses, workspace_grid
 from nrs_design.spec import RobotSpec
 from nrs_design.spec.robot import BalancedLegSpec
@@ -37,7 +36,7 @@ class LegBalance:
     coupler_distance: float
     total_mass: float  # M_a, everything that the spring holds, in kg. It is no counter-mass.
     total_distance: float  # B_a, its center of mass on the crank from the base joint, in m
-    stiffness: float  # Of the spring, in N/m
+    stiffness: float  # Stiffness of the spring in N/m
     # spring_on_crank, spring_on_base: its ends from the base joint, A0C_A and A0D0, in m.
     spring_on_crank: float
     spring_on_base: float
@@ -118,7 +117,7 @@ def _sprung(leg: Leg, spring: LegBalance) -> Leg:
 
 
 def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
-    """Return what the motors still have to hold in a balanced robot, shape (..., 3), in N m.
+    """Return the residual static torques of a balanced robot, shape (..., 3), in N m.
 
     The robot is the one without counter-masses. Weights that the balance does not know of remain:
     the middle leg, the offset of the platform, and its mass less the two payloads.
@@ -127,24 +126,11 @@ def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
     return weights + spring_torque(robot, balance, pose)
 
 
-@dataclass(frozen=True, slots=True)
-class BalanceTorques:
-    """Static torques over the workspace without and with balance, shape (n, 3), in N m."""
+def examine_balance(robot: Robot, balance: Balance) -> tuple[Array, Array]:
+    """Return the static torques over the reachable workspace without and with balance, in N m.
 
-    gravity: Array
-    residual: Array
-
-    @staticmethod
-    def summary(torque: Array) -> dict[str, list[float]]:
-        """Return root mean square and largest magnitude for each joint."""
-        return {
-            "rms": root_mean_square(torque).tolist(),
-            "largest": np.abs(torque).max(axis=0).tolist(),
-        }
-
-
-def examine_balance(robot: Robot, balance: Balance) -> BalanceTorques:
-    """Compute the torques over the reachable workspace, on the base that the balance is for."""
+    Shapes are (n, 3); the base has the tilt that the balance is for.
+    """
     on_base = robot.tilted(balance.tilt)
     poses = reachable_poses(robot, workspace_grid(robot, 21, 11))
-    return BalanceTorques(gravity_torque(on_base, poses), residual_torque(on_base, balance, poses))
+    return gravity_torque(on_base, poses), residual_torque(on_base, balance, poses)

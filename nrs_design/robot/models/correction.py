@@ -8,7 +8,7 @@ theta_x, and its own y axis, so that it holds for every azimuth of that leg.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -44,10 +44,10 @@ def simplified_dynamics(
     about_x = np.broadcast_to(robot.legs[2].axis, frame.shape[:-1])
     about_y = frame[..., :, 1]
     arm = frame @ body.center_of_mass + np.asarray(closed.d)[..., None] * frame[..., :, 2]
-    linear = _columns(np.cross(about_x, arm), np.cross(about_y, arm), frame[..., :, 2]) @ rates
+    linear = np.stack([np.cross(about_x, arm), np.cross(about_y, arm), frame[..., 2]], -1) @ rates
     if printed:
         about_y = np.broadcast_to(np.cross((0.0, 0.0, 1.0), robot.legs[2].axis), about_y.shape)
-    angular = _columns(about_x, about_y, np.zeros_like(about_x)) @ rates
+    angular = np.stack([about_x, about_y, np.zeros_like(about_x)], -1) @ rates
     Ms = (
         body.mass * linear.mT @ linear
         + angular.mT @ frame @ body.inertia @ frame.mT @ angular
@@ -74,10 +74,6 @@ def _platform_frame(closed: Posture) -> Array:
     return np.stack([stacked(x), stacked(y), stacked(closed.W)], axis=-1)
 
 
-def _columns(*vectors: Array) -> Array:
-    return np.stack(vectors, axis=-1)
-
-
 SAMPLES = 720
 
 
@@ -96,9 +92,9 @@ DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
 TABLE_3_5 = tuple(
     Sine(phi, psi, d) for d in DEPTHS for phi in (0.0, 0.1205) for psi in (0.0, 0.2043)
 )
-# Its last row: the whole workspace.
+# Last row of the table: the whole workspace.
 WHOLE_WORKSPACE = Sine(0.2618, 0.3491, (0.150, 0.250))
-# What the tilts are compared on: the depth moves, the angles are zero.
+# Motions for the comparison of tilts: the depth moves, the angles are zero.
 DEPTH_SINES = tuple(Sine(0.0, 0.0, d) for d in DEPTHS)
 
 
@@ -128,7 +124,7 @@ def correct(*torques: tuple[Array, Array]) -> Correction:
 
 
 def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
-    """Return the coefficients over one or several trajectories; of several, their means."""
+    """Return the coefficients over one trajectory, or their means over several."""
     chosen = (sines,) if isinstance(sines, Sine) else sines
     return correct(*(_torques(robot, sine) for sine in chosen))
 
@@ -143,34 +139,11 @@ class TiltTable:
     least_squares: Array
 
 
-def tilt_tables(
-    robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
-) -> tuple[TiltTable, ...]:
-    """Return a table for each group of motions, tilts in rad; shared motions are computed once."""
-    chosen = np.array(list(tilts), dtype=np.float64)
-    tilted = [robot.tilted(float(tilt)) for tilt in chosen]
-    fits = {
-        sine: [correction_coefficients(each, sine) for each in tilted]
-        for sine in dict.fromkeys(sine for group in groups for sine in group)
-    }
-    return tuple(
-        TiltTable(
-            chosen,
-            np.mean([[fit.mean_ratio for fit in fits[sine]] for sine in group], axis=0),
-            np.mean([[fit.least_squares for fit in fits[sine]] for sine in group], axis=0),
-        )
-        for group in groups
-    )
-
-
-def to_csv(table: TiltTable) -> str:
-    """Write a table for the controller: one line for each tilt, coefficients by mean ratio."""
-    lines = ["theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares"]
-    for tilt, ratio, squares in zip(
-        np.degrees(table.tilt), table.mean_ratio, table.least_squares, strict=True
-    ):
-        lines.append(",".join([f"{tilt:.6g}", *(f"{k:.6f}" for k in (*ratio, *squares))]))
-    return "\n".join(lines) + "\n"
+def tilt_table(robot: Robot, tilts: Array, sines: Sequence[Sine]) -> TiltTable:
+    """Return the coefficients over some motions at tilts in rad, shape (n,)."""
+    fits = [correction_coefficients(robot.tilted(float(tilt)), sines) for tilt in tilts]
+    ratios, squares = zip(*((fit.mean_ratio, fit.least_squares) for fit in fits), strict=True)
+    return TiltTable(tilts, np.array(ratios), np.array(squares))
 
 
 def thesis_tilts() -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from nrs_design.errors import DesignError
+from nrs_design.robot.models.vectors import Scalar
 from nrs_design.spec.robot import DriveSpec
 
 # Rounded digits of the four numbers that say the same: the thesis's agree within 0.01 %, with the
@@ -26,16 +27,11 @@ class JointDrive:
     """
 
     # Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
-    encoder_ratio: float
-    inertia: float  # Of the rotor, ``N^2 I_r`` in kg m^2
-    damping: float  # ``N^2/(K gradient)`` in N m s/rad
-    torque_per_command: float  # ``N/gradient`` in N m/rpm
-    coulomb_friction: float  # Largest dry friction as a command, in rpm
-
-    @property
-    def friction_torque(self) -> float:
-        """Largest dry friction at the joint in N m."""
-        return self.torque_per_command * self.coulomb_friction
+    encoder_ratio: Scalar
+    inertia: Scalar  # Inertia of the rotor at the joint, ``N^2 I_r`` in kg m^2
+    damping: Scalar  # ``N^2/(K gradient)`` in N m s/rad
+    torque_per_command: Scalar  # ``N/gradient`` in N m/rpm
+    friction: Scalar  # Largest dry friction at the joint in N m
 
 
 def build_drive(spec: DriveSpec) -> JointDrive:
@@ -60,5 +56,5 @@ def build_drive(spec: DriveSpec) -> JointDrive:
         inertia=ratio**2 * inertia,
         damping=ratio**2 / (speed * gradient),
         torque_per_command=ratio / gradient,
-        coulomb_friction=spec.coulomb_friction.si,
+        friction=ratio / gradient * spec.coulomb_friction.si,
     )

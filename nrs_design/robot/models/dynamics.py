@@ -207,12 +207,9 @@ class TorqueShares:
     inertia: Array
 
     @property
-    def means(self) -> tuple[float, float, float]:
+    def means(self) -> tuple[float, ...]:
         """Mean over poses and joints of gravity, Coriolis and inertia."""
-        gravity, coriolis, inertia = (
-            float(np.mean(part)) for part in (self.gravity, self.coriolis, self.inertia)
-        )
-        return gravity, coriolis, inertia
+        return tuple(float(part.mean()) for part in (self.gravity, self.coriolis, self.inertia))
 
 
 def torque_shares(

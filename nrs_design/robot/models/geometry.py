@@ -1,4 +1,4 @@
-"""Closing the loops: where every link of the robot is at a pose, and whether it can be there.
+"""Closed loops: position of every link at a pose, and reach.
 
 Each leg is a slider-crank in a plane that is spanned by its base axis ``a`` and the endoscope
 ``W`` (thesis fig. 3.3 and 3.4). In that plane angles count from ``a`` towards ``W``: beta of the
@@ -50,7 +50,7 @@ class LegPosture:
 
 @dataclass(frozen=True, slots=True)
 class Posture:
-    """The whole robot at a pose, or at each pose of a batch."""
+    """Posture of the robot at a pose, or at each pose of a batch."""
 
     W: Vector  # Direction of the endoscope in the base frame (thesis 3.3)
     d: Scalar  # Depth in m
@@ -77,15 +77,10 @@ def direction(pose: ArrayLike) -> Vector:
 
 def posture(robot: Robot, pose: ArrayLike) -> Posture:
     """Close the loops of all legs; a `PoseError` names the leg that does not reach."""
-    closed = close_loops(robot, direction(pose), components(pose)[2])
-    if not all(np.all(np.abs(item.sin_elbow) > 0) for item in closed.legs):
-        raise unreachable(robot, pose)
-    return closed
-
-
-def close_loops(robot: Robot, W: Vector, d: Scalar) -> Posture:
-    """Close the loops of all legs, whether they reach that far or not, at direction and depth."""
+    W, d = direction(pose), components(pose)[2]
     left, right, middle = (_leg_posture(leg, W, d) for leg in robot.legs)
+    if not all(np.all(np.abs(leg.sin_elbow) > 0) for leg in (left, right, middle)):
+        raise unreachable(robot, pose)
     inverse = 1.0 / dot(W, cross(left.normal, right.normal))
     u1 = scale(inverse, cross(right.normal, W))
     u2 = scale(inverse, cross(W, left.normal))
@@ -94,10 +89,8 @@ def close_loops(robot: Robot, W: Vector, d: Scalar) -> Posture:
 
 def _leg_posture(leg: Leg, W: Vector, d: Scalar) -> LegPosture:
     a, l1, l2, l3 = leg.axis, leg.l1, leg.l2, leg.l3
-    cos_gamma = dot(a, W)
-    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    cos_gamma, sin_gamma, end = _coupler_end(leg, W, d)
     normal = scale(1.0 / sin_gamma, cross(a, W))
-    end = (d * cos_gamma + l3 * sin_gamma, d * sin_gamma - l3 * cos_gamma)
     end_gamma = (l3 * cos_gamma - d * sin_gamma, l3 * sin_gamma + d * cos_gamma)
     x, y = end[0] - leg.l0, end[1]
     cos_beta, sin_beta = _crank(leg, x, y)
@@ -141,13 +134,13 @@ def reach(robot: Robot, pose: ArrayLike) -> Array:
 
     The pose need not be reachable.
     """
-    W = direction(pose)
-    d = components(pose)[2]
-    return np.stack([_distance(leg, W, d) for leg in robot.legs], axis=-1)
+    W, d = direction(pose), components(pose)[2]
+    ends = ((leg, _coupler_end(leg, W, d)[2]) for leg in robot.legs)
+    return np.stack([np.hypot(u - leg.l0, v) for leg, (u, v) in ends], axis=-1)
 
 
 def reach_margin(robot: Robot, pose: ArrayLike) -> Array:
-    """Return by how much in m every leg is inside its reach, shape (..., 3); zero is singular.
+    """Return the margin of every leg to its reach in m, shape (..., 3); zero is singular.
 
     The smaller of the distances from stretched and from folded, negative where the leg would have
     to be overstretched or folded beyond its limit.
@@ -163,12 +156,12 @@ def is_reachable(robot: Robot, pose: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(np.all(reach_margin(robot, pose) > 0, axis=-1))
 
 
-def _distance(leg: Leg, W: Vector, d: Scalar) -> Scalar:
+def _coupler_end(leg: Leg, W: Vector, d: Scalar) -> tuple[Scalar, Scalar, tuple[Scalar, Scalar]]:
+    """Return cosine and sine of gamma, and the coupler's end in the plane of the leg, in m."""
     cos_gamma = dot(leg.axis, W)
     sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
-    x = d * cos_gamma + leg.l3 * sin_gamma - leg.l0
-    y = d * sin_gamma - leg.l3 * cos_gamma
-    return np.hypot(x, y)
+    end = d * cos_gamma + leg.l3 * sin_gamma, d * sin_gamma - leg.l3 * cos_gamma
+    return cos_gamma, sin_gamma, end
 
 
 def unreachable(robot: Robot, pose: ArrayLike) -> PoseError:

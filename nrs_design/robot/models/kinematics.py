@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.models.geometry import LegPosture, Posture, posture, reach_margin
+from nrs_design.robot.models.geometry import LegPosture, Posture, posture
 from nrs_design.robot.models.motion import joint_driven, pose_driven
 from nrs_design.robot.models.robot import Leg, Robot
 from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, stacked
@@ -87,12 +87,9 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
             excess=lack,
             remedy="check the joint angles, in rad",
         )
-    return along + coupler_sign(robot) * np.sqrt(square)
-
-
-def coupler_sign(robot: Robot) -> float:
-    """Tell whether the coupler of the middle leg points along the endoscope or against it."""
-    return float(np.sign(_coupler_along(posture(robot, robot.home).legs[2])))
+    # Direction of the coupler: along the endoscope, or against the endoscope.
+    sign = np.sign(_coupler_along(posture(robot, robot.home).legs[2]))
+    return along + sign * np.sqrt(square)
 
 
 def _coupler_along(leg: LegPosture) -> Scalar:
@@ -150,19 +147,10 @@ def joint_motion(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class SingularityMargins:
-    """Distances from what makes the robot lose or gain a degree of freedom."""
+def coupler_margin(robot: Robot, pose: ArrayLike) -> Array:
+    """Return |cosine| of the angle between each leg's coupler and the endoscope, shape (..., 3).
 
-    reach: Array  # Shape (..., 3), in m: each leg's distance from being stretched or folded
-    # Shape (..., 3): |cosine| of the angle between each coupler and the endoscope. Where that of
-    # the middle leg vanishes, its crank has no hold on the depth.
-    coupler: Array
-
-
-def singularity_margins(robot: Robot, pose: ArrayLike) -> SingularityMargins:
-    """Return how far every leg is from its singularities."""
-    closed = posture(robot, pose)
-    left, right, middle = (np.abs(_coupler_along(leg)) for leg in closed.legs)
-    coupler = stacked((left, right, middle))
-    return SingularityMargins(reach_margin(robot, pose), coupler)
+    Where that of the middle leg vanishes, its crank has no hold on the depth: the pose is singular.
+    """
+    left, right, middle = (np.abs(_coupler_along(leg)) for leg in posture(robot, pose).legs)
+    return np.asarray(stacked((left, right, middle)))

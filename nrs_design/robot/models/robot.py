@@ -1,4 +1,4 @@
-"""The robot as a noun: legs, platform, gravity, and what it is made for."""
+"""Robot: legs, platform, gravity, workspace and task limits."""
 
 from __future__ import annotations
 

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.robot.models.dynamics import mass_matrix
-from nrs_design.robot.models.geometry import is_reachable, posture, unreachable
+from nrs_design.robot.models.geometry import is_reachable, posture, reach_margin, unreachable
 from nrs_design.robot.models.kinematics import (
+    coupler_margin,
     inverse_jacobian,
     inverse_kinematics,
     joint_motion,
-    singularity_margins,
 )
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array
@@ -57,7 +57,7 @@ def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class WorkspaceSurvey:
-    """What the robot can do of the workspace that its spec names."""
+    """Reach of the robot over the workspace of its spec."""
 
     reachable: float  # Share of the grid's poses that all legs reach, between 0 and 1
     # joint_low, joint_high: range of each joint over the reachable poses in rad, shape (3,).
@@ -69,7 +69,7 @@ class WorkspaceSurvey:
     # (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None where
     # no depth of the range is reachable.
     deepest: tuple[tuple[float, float, float | None], ...]
-    # What keeps the robot from the farthest pose of the grid; None if all are reachable.
+    # Obstacle at the farthest pose of the grid; None if all poses are reachable.
     obstacle: PoseError | None
 
 
@@ -79,15 +79,14 @@ def survey_workspace(robot: Robot) -> WorkspaceSurvey:
     poses = workspace_grid(robot, _ANGLES, _DEPTHS).reshape(-1, 3)
     inside = is_reachable(robot, poses)
     joints = inverse_kinematics(robot, poses[inside])
-    margins = singularity_margins(robot, poses[inside])
     space = robot.workspace
     corners = product((-space.phi, space.phi), (-space.psi, space.psi))
     return WorkspaceSurvey(
         reachable=float(np.mean(inside)),
         joint_low=joints.min(axis=0),
         joint_high=joints.max(axis=0),
-        reach_margin=margins.reach.min(axis=0),
-        coupler_margin=margins.coupler.min(axis=0),
+        reach_margin=reach_margin(robot, poses[inside]).min(axis=0),
+        coupler_margin=coupler_margin(robot, poses[inside]).min(axis=0),
         deepest=tuple((phi, psi, _deepest(robot, phi, psi)) for phi, psi in corners),
         obstacle=None if np.all(inside) else unreachable(robot, poses[~inside]),
     )
@@ -101,19 +100,11 @@ def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
     return float(inside[-1]) if len(inside) else None
 
 
-@dataclass(frozen=True, slots=True)
-class JointPeaks:
-    """Largest joint velocities in rad/s and accelerations in rad/s^2, shape (3,)."""
+def joint_peaks(robot: Robot, pose: ArrayLike) -> tuple[Array, Array]:
+    """Return the largest velocity and acceleration of each joint within the task limits.
 
-    velocity: Array
-    acceleration: Array
-
-
-def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
-    """Return what the task limits ask of the joints over many poses, as far as these are reachable.
-
-    phi, psi and d move with their limits, each with the sign that asks most of the joint. The
-    accelerations include those that come from velocities alone, at the corners of the limits.
+    In rad/s and rad/s^2, over the reachable poses. phi, psi and d move with their limits, each with
+    the sign that asks most of the joint; accelerations include those that velocities alone make.
     """
     poses = reachable_poses(robot, pose)
     limits = robot.task_limits
@@ -126,7 +117,7 @@ def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
         for signs in product((1.0,), (1.0, -1.0), (1.0, -1.0))
     ]
     acceleration = gain @ a + np.max(corners, axis=0)
-    return JointPeaks((gain @ v).max(axis=0), acceleration.max(axis=0))
+    return (gain @ v).max(axis=0), acceleration.max(axis=0)
 
 
 # Least over largest eigenvalue of M below which a direction of motion counts as without inertia.

@@ -1,1 +1,1 @@
-"""What is said and drawn of a robot."""
+"""Page and figures of a robot."""

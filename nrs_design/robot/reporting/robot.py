@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -33,13 +33,10 @@ from nrs_design.robot.models.correction import (
     TABLE_3_5,
     correction_coefficients,
     thesis_tilts,
-    tilt_tables,
+    tilt_table,
 )
 from nrs_design.robot.models.robot import LEGS
-from nrs_design.robot.models.workspace import (
-    examine_inertia,
-    survey_workspace,
-)
+from nrs_design.robot.models.workspace import examine_inertia, survey_workspace
 from nrs_design.robot.reporting.figures import (
     JOINTS,
     draw_balance,
@@ -51,15 +48,17 @@ from nrs_design.robot.reporting.figures import (
 if TYPE_CHECKING:
     import datetime
 
+    from nrs_design.robot.models.balance import Balance
     from nrs_design.robot.models.robot import Robot
     from nrs_design.robot.models.workspace import WorkspaceSurvey
     from nrs_design.spec import LoadedSpec, RobotSpec
 
 FOOTER = "Page of nrs-design. A model of rigid links in floating point, not a proof."
-# Where the depths of the workspace are looked at.
+# Depths of the figures, as shares of the workspace.
 _SHARES = (0.0, 0.5, 0.9)
 # Least |cosine| between coupler and endoscope that is far from a singular pose.
 _NEAR_SINGULAR = 0.1
+_WORKSPACE, _BALANCE = "Workspace", "Passive balance"
 _LIMITS = (
     "Joints without play, links that do not bend, no friction: what the spec does not say.",
     "Reach is looked at on a grid over the declared workspace, not between its points.",
@@ -70,30 +69,36 @@ _LIMITS = (
 def robot_report(
     loaded: LoadedSpec, spec: RobotSpec, robot: Robot, date: datetime.date | None = None
 ) -> Report:
-    """Say and draw everything about a robot."""
+    """Return the page about a robot, with tables and figures."""
     survey, inertia = survey_workspace(robot), examine_inertia(robot)
-    reached, at = survey.obstacle is None, partial(linked, loaded)
+    obstacle, at = survey.obstacle, partial(linked, loaded)
+    eigenvalues = ", ".join(map(number, inertia))
+    balance = _or_why(lambda: _balance(loaded, spec, robot)) if spec.balance else ()
+    balanced = [Section(_BALANCE, balance)] if balance else []
+    claim = "Every pose of a grid over the declared workspace is within reach of all legs."
+    if obstacle is not None:
+        claim = (
+            f"{unreachable_share(survey)} of a grid over the declared workspace cannot be reached: "
+            f"{obstacle.message}."
+        )
     return Report(
         name=spec.name,
         title=spec.title,
-        verdict="reachable" if reached else "unreachable",
-        claim=_claim(survey),
+        verdict="unreachable" if obstacle else "reachable",
+        claim=claim,
         remarks=(),
         facts=(
             ("Moving mass", at(f"{number(robot.moving_mass)} kg", "platform")),
-            (
-                "Eigenvalues of M at home",
-                at(f"{', '.join(number(v) for v in inertia)} kg·m²", "legs"),
-            ),
+            ("Eigenvalues of M at home", at(f"{eigenvalues} kg·m²", "legs")),
             ("Tilt of the base", at(f"{number(math.degrees(robot.base_tilt))} deg", "base_tilt")),
             ("Package", f"nrs-design {__version__}"),
             ("SHA-256 of the spec", Linked(loaded.sha256, section=SPEC)),
         ),
         sections=(
             _workspace(loaded, robot, survey),
-            _dynamics(robot),
-            _correction(robot),
-            *_balance(loaded, spec, robot),
+            Section("Dynamics", _or_why(lambda: _dynamics(robot))),
+            Section("Correction of the simplified torque", _or_why(lambda: _correction(robot))),
+            *balanced,
             Section("What is not said", (Bullets("", _LIMITS),), boxed=True),
             spec_section(loaded),
         ),
@@ -103,21 +108,15 @@ def robot_report(
     )
 
 
-def _claim(survey: WorkspaceSurvey) -> str:
-    if survey.obstacle is None:
-        return "Every pose of a grid over the declared workspace is within reach of all legs."
-    share = math.ceil(1e4 * (1 - survey.reachable)) / 100
-    return (
-        f"{share:g} % of a grid over the declared workspace cannot be reached: "
-        f"{survey.obstacle.message}."
-    )
+def unreachable_share(survey: WorkspaceSurvey) -> str:
+    """Write the share of unreachable poses in percent, rounded up."""
+    return f"{math.ceil(1e4 * (1 - survey.reachable)) / 100:g} %"
 
 
 def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
-    if survey.obstacle is None:
-        yield Light("Reach", State.GOOD, "the whole declared workspace", _WORKSPACE)
-    else:
-        yield Light("Reach", State.BAD, "not the whole declared workspace", _WORKSPACE)
+    reached, text = survey.obstacle is None, "the whole declared workspace"
+    state = State.GOOD if reached else State.BAD
+    yield Light("Reach", state, text if reached else f"not {text}", _WORKSPACE)
     nearest = float(np.min(survey.coupler_margin))
     state = State.GOOD if nearest > _NEAR_SINGULAR else State.DOUBTFUL
     text = f"couplers stay {number(nearest, 3)} from singular (|cosine|)"
@@ -128,29 +127,22 @@ def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
         yield Light("Balance", State.GOOD, "counter-masses and springs are designed", _BALANCE)
 
 
-_WORKSPACE, _BALANCE = "Workspace", "Passive balance"
-
-
-def _workspace(loaded: LoadedSpec, robot: Robot, survey: WorkspaceSurvey) -> Section:
+def workspace_tables(loaded: LoadedSpec, survey: WorkspaceSurvey) -> tuple[Table, Table]:
+    """Return the ranges of the joints, and how deep the robot reaches at the corners."""
     turn, at = np.degrees, partial(linked, loaded)
-    rows = tuple(
+    ranges = zip(survey.joint_low, survey.joint_high, strict=True)
+    margins = zip(survey.reach_margin, survey.coupler_margin, strict=True)
+    joints = tuple(
         (
             name,
             at(f"{number(turn(low))} to {number(turn(high))}", "legs", leg),
             at(number(1e3 * reach), "legs", leg),
             at(number(coupler, 3), "legs", leg),
         )
-        for leg, name, low, high, reach, coupler in zip(
-            LEGS,
-            JOINTS,
-            survey.joint_low,
-            survey.joint_high,
-            survey.reach_margin,
-            survey.coupler_margin,
-            strict=True,
+        for leg, name, (low, high), (reach, coupler) in zip(
+            LEGS, JOINTS, ranges, margins, strict=True
         )
     )
-    columns = ("Joint", "Angle [deg]", "Least reach margin [mm]", "Least coupler margin [1]")
     corners = tuple(
         (
             at(number(turn(phi)), "workspace", "phi"),
@@ -159,106 +151,83 @@ def _workspace(loaded: LoadedSpec, robot: Robot, survey: WorkspaceSurvey) -> Sec
         )
         for phi, psi, d in survey.deepest
     )
+    columns = ("Joint", "Angle [deg]", "Least reach margin [mm]", "Least coupler margin [1]")
     depths = ("φ [deg]", "ψ [deg]", "Deepest [mm]")
-    return Section(
-        _WORKSPACE,
-        (
-            Table("Joints over the reachable workspace", columns, rows),
-            Table("Deepest reachable pose at the corners", depths, corners),
-            Illustration(
-                "workspace",
-                "Reach over the workspace",
-                "How far the leg that is nearest to its limit is from it, at three depths. White: "
-                "some leg cannot reach.",
-                draw_workspace(robot),
-            ),
-        ),
+    return (
+        Table("Joints over the reachable workspace", columns, joints),
+        Table("Deepest reachable pose at the corners", depths, corners),
     )
 
 
-def _dynamics(robot: Robot) -> Section:
+def _workspace(loaded: LoadedSpec, robot: Robot, survey: WorkspaceSurvey) -> Section:
+    figure = Illustration(
+        "workspace",
+        "Reach over the workspace",
+        "How far the leg that is nearest to its limit is from it, at three depths. White: some leg "
+        "cannot reach.",
+        draw_workspace(robot),
+    )
+    return Section(_WORKSPACE, (*workspace_tables(loaded, survey), figure))
+
+
+def _dynamics(robot: Robot) -> Iterator[Block]:
     low, high = robot.workspace.d
     depths = [low + share * (high - low) for share in _SHARES]
-
-    def drawn() -> tuple[Block, ...]:
-        return (
-            Illustration(
-                "torque-shares",
-                "What the torques are made of",
-                "Mean shares of gravity, velocities and accelerations over poses at three depths, "
-                "at the joint speeds and accelerations of thesis 3.3.",
-                draw_torque_shares(robot, depths),
-            ),
-        )
-
-    return Section("Dynamics", _or_why(drawn))
+    yield Illustration(
+        "torque-shares",
+        "What the torques are made of",
+        "Mean shares of gravity, velocities and accelerations over poses at three depths, at the "
+        "joint speeds and accelerations of thesis 3.3.",
+        draw_torque_shares(robot, depths),
+    )
 
 
-def _correction(robot: Robot) -> Section:
-    def drawn() -> tuple[Block, ...]:
-        depth, every = tilt_tables(robot, thesis_tilts(), DEPTH_SINES, TABLE_3_5)
-        found = correction_coefficients(robot, TABLE_3_5)
-        shown = found.mean_ratio, found.least_squares, found.least_squares_error
-        rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *shown, strict=True))
-        columns = ("Joint", "Mean ratio [1]", "Least squares [1]", "Error left [N·m]")
-        return (
-            Paragraph(
-                "Torque of the full model over that of the simplified one, which a controller can "
-                "evaluate at every tick."
-            ),
-            Table("Coefficients over all motions of thesis table 3.5", columns, rows),
-            Illustration(
-                "correction",
-                "Correction over the tilt of the base",
-                "For motions of the depth alone, and with the angles.",
-                draw_correction(depth, every),
-            ),
-        )
-
-    return Section("Correction of the simplified torque", _or_why(drawn))
+def _correction(robot: Robot) -> Iterator[Block]:
+    tables = (tilt_table(robot, thesis_tilts(), sines) for sines in (DEPTH_SINES, TABLE_3_5))
+    found = correction_coefficients(robot, TABLE_3_5)
+    shown = found.mean_ratio, found.least_squares, found.least_squares_error
+    rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *shown, strict=True))
+    yield Paragraph(
+        "Torque of the full model over that of the simplified one, which a controller can evaluate "
+        "at every tick."
+    )
+    columns = ("Joint", "Mean ratio [1]", "Least squares [1]", "Error left [N·m]")
+    yield Table("Coefficients over all motions of thesis table 3.5", columns, rows)
+    yield Illustration(
+        "correction",
+        "Correction over the tilt of the base",
+        "For motions of the depth alone, and with the angles.",
+        draw_correction(*tables),
+    )
 
 
-def _balance(loaded: LoadedSpec, spec: RobotSpec, robot: Robot) -> tuple[Section, ...]:
-    if spec.balance is None:
-        return ()
-
-    def drawn() -> tuple[Block, ...]:
-        wanted = design_balance(spec, robot)
-        torques = examine_balance(robot, wanted)
-        rows = tuple(
-            (
-                leg,
-                *(
-                    linked(loaded, number(value), "balance")
-                    for value in (
-                        1e3 * found.arm_mass,
-                        1e3 * found.coupler_mass,
-                        1e3 * found.total_mass,
-                        1e3 * found.total_distance,
-                        1e-3 * found.stiffness,
-                    )
-                ),
-            )
-            for leg, found in (("left", wanted.left), ("right", wanted.right))
-        )
-        columns = ("Leg", "M_c [g]", "M_b [g]", "M_a [g]", "B_a [mm]", "Spring k [N/mm]")
-        return (
-            Table("Counter-masses and springs", columns, rows),
-            Illustration(
-                "balance",
-                "Static torque without and with balance",
-                f"Over the reachable workspace, on a base tilted by "
-                f"{number(math.degrees(wanted.tilt))} deg.",
-                draw_balance(torques.gravity, torques.residual),
-            ),
-        )
-
-    return (Section(_BALANCE, _or_why(drawn)),)
+def balance_table(loaded: LoadedSpec, wanted: Balance) -> Table:
+    """Return the counter-masses and springs of both side legs."""
+    rows = []
+    for leg, found in (("left", wanted.left), ("right", wanted.right)):
+        masses = (found.arm_mass, found.coupler_mass, found.total_mass)
+        values = *(1e3 * mass for mass in masses), 1e3 * found.total_distance
+        numbers = (*values, 1e-3 * found.stiffness)
+        rows.append((leg, *(linked(loaded, number(value), "balance") for value in numbers)))
+    columns = ("Leg", "M_c [g]", "M_b [g]", "M_a [g]", "B_a [mm]", "Spring k [N/mm]")
+    return Table("Counter-masses and springs", columns, tuple(rows))
 
 
-def _or_why(make: Callable[[], tuple[Block, ...]]) -> tuple[Block, ...]:
+def _balance(loaded: LoadedSpec, spec: RobotSpec, robot: Robot) -> Iterator[Block]:
+    wanted = design_balance(spec, robot)
+    yield balance_table(loaded, wanted)
+    yield Illustration(
+        "balance",
+        "Static torque without and with balance",
+        "Over the reachable workspace, on a base tilted by "
+        f"{number(math.degrees(wanted.tilt))} deg.",
+        draw_balance(*examine_balance(robot, wanted)),
+    )
+
+
+def _or_why(make: Callable[[], Iterable[Block]]) -> tuple[Block, ...]:
     """Return what a section shows, or why there is nothing to show for this robot."""
     try:
-        return make()
+        return tuple(make())
     except NrsDesignError as error:
         return (Paragraph(f"Not computed: {error.message}."),)

@@ -1,4 +1,4 @@
-"""The three experiments of the thesis on tracking, 4.2 to 4.4: what moves, and what it gave."""
+"""Three tracking experiments of thesis 4.2 to 4.4, and their records."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HOLD = 10.0
 # 4.37 to 4.39, taken literally. It makes a period of 110 s.
 FAST, SLOW = 2 * pi * 0.1, 0.0571
 MOTIONS = ("d", "phi", "psi")
-# Where each is in a pose.
+# Index of each coordinate in a pose.
 COORDINATE = {"phi": 0, "psi": 1, "d": 2}
 
 
@@ -27,7 +27,7 @@ class Experiment:
 
     moved: str  # ``d``, ``phi`` or ``psi``
     center: tuple[float, float, float]  # (phi, psi, d) in rad and m
-    amplitude: float  # Of the coordinate that moves, in rad or m
+    amplitude: float  # Amplitude of that coordinate in rad or m
     rate: float  # Angular frequency of the sine in rad/s
     hold: float = HOLD  # Time at the center before the sine, in s
 
@@ -59,10 +59,9 @@ def thesis_experiments(
 ) -> tuple[Experiment, Experiment, Experiment]:
     """Return the experiments on one controller, scaled to the robot's workspace.
 
-    With the workspace of the NeuRoboScope they are those of the thesis, if no period in s is given:
-    d moves over its whole range at phi = psi = 0; phi and psi move by their largest values at the
-    smallest d, or at the middle one for the balanced robot, which also moves slowly. The
-    independent joints were tested with the slow motion of d too (4.33c).
+    With that of the NeuRoboScope, and no period in s, they are those of the thesis: d moves over
+    its whole range at phi = psi = 0; phi and psi move by their largest values at the smallest d, or
+    at the middle one for the balanced robot, which is slow, as independent joints are in d (4.33c).
     """
     space, balanced = robot.workspace, controller == "balanced"
     low, high = space.d
@@ -89,7 +88,7 @@ class TrackingRecord:
     """What one experiment gave."""
 
     controller: str  # Which one
-    experiment: Experiment  # What was asked for
+    experiment: Experiment  # Reference motion
     time: Array  # Ticks in s, shape (n,)
     # wanted, measured, actual: poses (phi, psi, d), shape (n, 3), in rad and m; measured through
     # the encoders.

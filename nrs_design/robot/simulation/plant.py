@@ -1,18 +1,18 @@
-"""The robot with its drives as a differential equation, and one step of it.
+"""Differential equation of the robot with its drives, and one time step.
 
 ``(M + N^2 I_r) q'' + damping q' + C q' + G + springs = torque_per_command delta - friction``: the
 full dynamics of all links, with counter-masses and springs where the robot is balanced, and the
 rotors behind their gears.
 
-Dry friction really sticks: it is by velocities at the end of a step (Moreau's time stepping). No
-smoothing and no threshold on the velocity: a joint sticks if some friction within its limit stops
-it within the step, and then has the velocity zero. By hand, as SciPy integrates no equation with
-such a jump in it.
+Dry friction really sticks, by velocities at the end of a step (Moreau's time stepping): a joint has
+the velocity zero if some friction within its limit stops it within the step. There is no threshold
+on the velocity. SciPy integrates no equation with such a jump.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -28,46 +28,33 @@ ACCURACY = 1e-10
 LIMIT = 20_000
 
 
-@dataclass(frozen=True, slots=True)
-class DryFriction:
-    """The problem ``inertia v + p = impulse`` with dry friction p, for one inertia.
+def slide_or_stick(inertia: Array, impulse: Array, limit: Array, start: Array) -> Array:
+    """Return the velocities v of ``inertia v + p = impulse`` with dry friction p, in rad/s.
 
     Each ``|p_i| <= limit_i``, and ``p_i = limit_i sign(v_i)`` where v_i is not zero. There is
     exactly one solution, the minimum of ``v' inertia v/2 - v' impulse + sum limit_i |v_i|``. It
     is found by proximal steps in a diagonal metric that dominates the inertia, so that every step
     comes nearer; where the rotors outweigh what couples the joints, a few steps are enough.
+
+    Inertias are symmetric and positive definite, shape (n, 3, 3), in kg m^2; impulse, limit and
+    a guess of the velocities have the shape (n, 3).
     """
-
-    inertia: Array  # Symmetric and positive definite, shape (n, 3, 3), in kg m^2
-    metric: Array  # Diagonal of the metric, shape (n, 3)
-    slack: Array  # The metric less the inertia, shape (n, 3, 3)
-
-    @staticmethod
-    def of(inertia: Array) -> DryFriction:
-        """Prepare the problem for matrices of shape (n, 3, 3)."""
-        metric = np.abs(inertia).sum(axis=-1)
-        return DryFriction(inertia, metric, np.eye(3) * metric[:, :, None] - inertia)
-
-    def slide_or_stick(self, impulse: Array, limit: Array, start: Array) -> Array:
-        """Return the velocities in rad/s, shape (n, 3).
-
-        The impulse in N m s is inertia times the velocity that there would be without friction, the
-        limit the largest impulse of the friction, and the start a guess of the velocities.
-        """
-        v = start
-        for _ in range(LIMIT):
-            push = impulse + (self.slack @ v[..., None])[..., 0]
-            new: Array = (push - np.minimum(np.maximum(push, -limit), limit)) / self.metric
-            change = np.abs(new - v).max()
-            v = new
-            if change <= ACCURACY:
-                return v
-        raise ArithmeticError("the velocities under dry friction do not converge")
+    metric = np.abs(inertia).sum(axis=-1)
+    slack = np.eye(3) * metric[:, :, None] - inertia
+    v = start
+    for _ in range(LIMIT):
+        push = impulse + _times(slack, v)
+        new: Array = (push - np.minimum(np.maximum(push, -limit), limit)) / metric
+        change = np.abs(new - v).max()
+        v = new
+        if change <= ACCURACY:
+            return v
+    raise ArithmeticError("the velocities under dry friction do not converge")
 
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """Where the joints are, shape (n, 3), in rad and rad/s, and their dry friction in N m."""
+    """Angles, velocities and dry friction of the joints, shape (n, 3), in rad, rad/s and N m."""
 
     position: Array
     velocity: Array
@@ -85,7 +72,7 @@ class JointState:
 class Mechanism:
     """What the drives move: all links and the platform, and perhaps a balance."""
 
-    robot: Robot  # On its base, with its counter-masses if it has any
+    robot: Robot  # Robot on its base, with counter-masses if balanced
     balance: Balance | None = None  # The balance whose springs act on it
 
     def mass_and_bias(self, position: Array, velocity: Array) -> tuple[Array, Array]:
@@ -100,20 +87,9 @@ class Mechanism:
         return mass, bias + spring_torque(self.robot, self.balance, pose)
 
 
-@dataclass(frozen=True, slots=True)
-class DriveArrays:
-    """Drives of a batch: inertia, damping, torque per command, friction; shapes (n, 1)."""
-
-    inertia: Array
-    damping: Array
-    torque_per_command: Array
-    friction: Array
-
-    @staticmethod
-    def of(drives: list[JointDrive]) -> DriveArrays:
-        """Collect one drive for each robot of the batch."""
-        rows = [(d.inertia, d.damping, d.torque_per_command, d.friction_torque) for d in drives]
-        return DriveArrays(*(column[:, None] for column in np.array(rows).T))
+def batch_of(drives: Iterable[JointDrive]) -> JointDrive:
+    """Return one drive for each robot of a batch as a drive of arrays, shapes (n, 1)."""
+    return JointDrive(*np.array([astuple(drive) for drive in drives]).T[..., None])
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,21 +101,19 @@ class Stepper:
     from the velocity at the end of the step.
     """
 
-    drives: DriveArrays  # Drives of the batch
+    drives: JointDrive  # Drives of the batch
     h: float  # Length of a step in s
     mass: Array  # M and the rotors, shape (n, 3, 3)
     bias: Array  # Shape (n, 3), in N m
-    contact: DryFriction  # What the velocity at the end of the step follows from
-    inverse: Array  # Inverse of its inertia, shape (n, 3, 3)
+    inertia: Array  # The same, with half a step of damping: it acts at the end of the step
+    inverse: Array  # Its inverse, shape (n, 3, 3)
 
     @staticmethod
-    def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:
+    def at(drives: JointDrive, h: float, mass: Array, bias: Array) -> Stepper:
         """Return the stepper of h seconds for mass matrices and bias (N m) of the mechanism."""
         total = mass + np.eye(3) * drives.inertia[..., None]
         inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
-        return Stepper(
-            drives, h, total, bias, DryFriction.of(inertia), np.asarray(np.linalg.inv(inertia))
-        )
+        return Stepper(drives, h, total, bias, inertia, np.asarray(np.linalg.inv(inertia)))
 
     def step(self, state: JointState, command: Array) -> JointState:
         """Return the state one step later, under commands of shape (n, 3), in rpm."""
@@ -148,8 +122,8 @@ class Stepper:
         impulse = _times(self.mass, v) - h / 2 * drives.damping * v + push
         # The friction of the last step is right while a joint keeps sliding.
         guess = np.where(v == 0.0, 0.0, _times(self.inverse, impulse - h * state.friction))
-        new = self.contact.slide_or_stick(impulse, h * drives.friction, guess)
-        friction = (impulse - _times(self.contact.inertia, new)) / h
+        new = slide_or_stick(self.inertia, impulse, h * drives.friction, guess)
+        friction = (impulse - _times(self.inertia, new)) / h
         return JointState(state.position + h / 2 * (v + new), new, friction)
 
 

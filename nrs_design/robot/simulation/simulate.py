@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from itertools import groupby
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from nrs_design.robot.design.motion_control import LawState
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.experiment import TrackingRecord
-from nrs_design.robot.simulation.plant import DriveArrays, JointState, Stepper
+from nrs_design.robot.simulation.plant import JointState, Stepper, batch_of
 from nrs_design.robot.simulation.track import Track
 
 # Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
@@ -23,7 +22,7 @@ STEPS_PER_TICK = 1
 HELD_PHASE = 2e-3
 # Arrays of so many ticks still fit into memory.
 MOST_TICKS = 2_000_000
-# What is taken for granted, or left out.
+# Effects that the simulation leaves out.
 LEFT_OUT = (
     "compliance of the capstan's cable, of the links and of the joints",
     "backlash of the gearhead, and its efficiency (at most 70 %, thesis table 4.1)",
@@ -35,36 +34,28 @@ LEFT_OUT = (
 )
 
 
-def simulate(
-    tracks: Iterable[Track],
-    *,
-    steps: int = STEPS_PER_TICK,
-    held_phase: float = HELD_PHASE,
-    tell: Progress = silent,
-) -> list[TrackingRecord]:
-    """Simulate every experiment of every track; records are in their order.
+def simulate(tracks: Sequence[Track], tell: Progress = silent) -> list[TrackingRecord]:
+    """Simulate the experiment of every track; records are in their order.
 
-    Experiments of the same rate run in lockstep, which does not change what they give. The mass
-    matrix is held for a phase of the sine in rad. A motion that leaves what the robot can reach is
-    a `DesignError`.
+    Experiments of the same rate run in lockstep, which does not change what they give. A motion
+    that leaves what the robot can reach is a `DesignError`.
     """
-    single = [one for track in tracks for one in track.split()]
-    order = sorted(range(len(single)), key=lambda index: _clock(single[index]))
+    groups: dict[tuple[float, float, float], list[int]] = {}
+    for index, track in enumerate(tracks):
+        groups.setdefault(_clock(track), []).append(index)
     records: dict[int, TrackingRecord] = {}
-    for (duration, rate, period), group in groupby(order, key=lambda i: _clock(single[i])):
-        indices = list(group)
+    for (duration, rate, period), indices in sorted(groups.items()):
         many = "experiment" if len(indices) == 1 else "experiments together"
         tell(f"{len(indices)} {many}, {duration:.4g} s")
-        held = max(1, int(held_phase / rate * steps / period))
-        found = _lockstep([single[index] for index in indices], steps, held)
+        held = max(1, int(HELD_PHASE / rate * STEPS_PER_TICK / period))
+        found = _lockstep([tracks[index] for index in indices], held)
         records |= zip(indices, found, strict=True)
-    return [records[index] for index in range(len(single))]
+    return [records[index] for index in range(len(tracks))]
 
 
 def _clock(track: Track) -> tuple[float, float, float]:
     """Return what tracks must have in common to run in lockstep."""
-    (experiment,) = track.experiments
-    return experiment.duration, experiment.rate, track.law.period
+    return track.experiment.duration, track.experiment.rate, track.law.period
 
 
 def _ticks(batch: Sequence[Track]) -> Array:
@@ -78,10 +69,10 @@ def _ticks(batch: Sequence[Track]) -> Array:
     return np.asarray(period * np.arange(round(duration / period) + 1), dtype=np.float64)
 
 
-def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[TrackingRecord]:
+def _lockstep(batch: Sequence[Track], held: int) -> list[TrackingRecord]:
     time, period = _ticks(batch), batch[0].law.period
-    wanted = _stacked([one.experiments[0].reference(one.mechanism.robot, time) for one in batch])
-    drives = DriveArrays.of([one.drive for one in batch])
+    wanted = _stacked([one.experiment.reference(one.mechanism.robot, time) for one in batch])
+    drives = batch_of(one.drive for one in batch)
     state = JointState(wanted.position[0], *np.zeros((2, len(batch), 3)))
     benches = _shared(batch, lambda one: (one.law, one.encoder))
     plants = _shared(batch, lambda one: (one.mechanism.robot, one.mechanism.balance))
@@ -97,15 +88,23 @@ def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[TrackingRec
                 commands[tick, rows], memory[index] = track.law.step(
                     memory[index], reference.at(rows), angles[tick, rows]
                 )
-            for step in range(tick * steps, (tick + 1) * steps):
+            for step in range(tick * STEPS_PER_TICK, (tick + 1) * STEPS_PER_TICK):
                 if seen is None or (step % held == 0 and not state.is_like(seen)):
-                    seen = state
-                    stepper = Stepper.at(drives, period / steps, *_mass_and_bias(plants, state))
+                    seen, h = state, period / STEPS_PER_TICK
+                    stepper = Stepper.at(drives, h, *_mass_and_bias(plants, state))
                 state = stepper.step(state, commands[tick])
         except PoseError as error:
             raise _out_of_reach(batch, time[tick]) from error
     return [
-        _record(one, time, angles[:, row], positions[:, row], commands[:, row])
+        TrackingRecord(
+            controller=one.controller,
+            experiment=one.experiment,
+            time=time,
+            wanted=one.experiment.motion(time)[0],
+            measured=direct_kinematics(one.mechanism.robot, angles[:, row] / one.encoder.ratio),
+            actual=direct_kinematics(one.mechanism.robot, positions[:, row]),
+            command=commands[:, row],
+        )
         for row, one in enumerate(batch)
     ]
 
@@ -138,24 +137,5 @@ def _mass_and_bias(plants: list[tuple[Track, list[int]]], state: JointState) -> 
 
 def _stacked(references: list[JointMotion]) -> JointMotion:
     """Join the references of all rows; shapes (ticks, n, 3)."""
-    return JointMotion(
-        *(
-            np.stack([getattr(one, name) for one in references], axis=1)
-            for name in ("position", "velocity", "acceleration")
-        )
-    )
-
-
-def _record(
-    track: Track, time: Array, angles: Array, positions: Array, commands: Array
-) -> TrackingRecord:
-    robot, experiment = track.mechanism.robot, track.experiments[0]
-    return TrackingRecord(
-        controller=track.controller,
-        experiment=experiment,
-        time=time,
-        wanted=experiment.motion(time)[0],
-        measured=direct_kinematics(robot, angles / track.encoder.ratio),
-        actual=direct_kinematics(robot, positions),
-        command=commands,
-    )
+    parts = ((one.position, one.velocity, one.acceleration) for one in references)
+    return JointMotion(*(np.stack(arrays, axis=1) for arrays in zip(*parts, strict=True)))

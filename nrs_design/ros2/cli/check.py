@@ -15,7 +15,7 @@ from nrs_design.cli.gate import GateFormat, format_of
 from nrs_design.cli.options import read_work
 from nrs_design.cli.printing import note, progress, say, say_failure, wants_text
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.ros2.quantities import LAG, RATE, RATE_UNITS, ROTATIONAL, STIFFNESS, Range
+from nrs_design.ros2.law import LAG, ROTATIONAL, STIFFNESS, Range
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 if TYPE_CHECKING:
@@ -48,13 +48,6 @@ def check(
         typer.Option(metavar="RANGE", help="Age of the measured pose and force in periods: 1..3."),
     ] = "0",
     lag: Lag = "0 ms",
-    rate: Annotated[
-        str | None,
-        typer.Option(
-            metavar="RATE",
-            help="Of the control loop, such as '500 1/s'; default: update_rate in the file.",
-        ),
-    ] = None,
     budget: Annotated[
         float,
         typer.Option(
@@ -68,30 +61,30 @@ def check(
     """Prove or refute every axis of the admittance controllers in a parameter file.
 
     The law of admittance_controller (ros2_controllers) is taken as an exact difference equation at
-    the rate of the loop, with its force filter, for every stiffness in the range and every age of
-    the measurement, changing at will. It warns of parameters that do not do what they seem to.
+    the update_rate of the file, with its force filter, for every stiffness in the range and every
+    age of the measurement, changing at will. It warns of what does not do what it seems to.
 
     Exit code 0: all axes proved. 1: one refuted. 2: a parameter of the law is missing or
     wrong. 3: undecided; so is any other controller of the file that may move the robot.
 
     Example: nrs-design ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'
 
-    Example: nrs-design ros2 check controllers.yaml --stiffness '0..900 N/m' --age 1..3 --rate 500
+    Example: nrs-design ros2 check controllers.yaml --stiffness '0..900 N/m' --age 1..3
     """
     from nrs_design.gating.formats import FORMATS
-    from nrs_design.ros2.check import Question, check_file
+    from nrs_design.ros2.axis import ControllerContext
+    from nrs_design.ros2.check import check_file
     from nrs_design.search.certification import Limits
 
     chosen = format_of(format_)
-    question = Question(
+    asked = ControllerContext(
         _ages(age),
         range_of("--stiffness", stiffness, STIFFNESS),
         range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
-        None if rate is None else _rate(rate),
         read_lag(lag),
     )
     with progress("checking") as step:
-        outcome = check_file(file, question, Limits(budget=budget), step)
+        outcome = check_file(file, asked, Limits(budget=budget), step)
     if chosen != "text":
         sys.stdout.write(FORMATS[chosen](outcome))
     elif wants_text():
@@ -132,28 +125,13 @@ def _ages(text: str) -> tuple[int, int]:
     return ages
 
 
-def _rate(text: str) -> Fraction:
-    from nrs_design.spec.exact import parse_exact
-
-    number = text
-    for unit in RATE_UNITS:
-        number = number.removesuffix(unit).rstrip(" ")
-    try:
-        rate = parse_exact(number)
-    except SpecError as error:
-        raise NrsDesignError(f"--rate: {error.message}", remedy=f"write {RATE}") from None
-    if rate <= 0:
-        raise NrsDesignError("--rate: is not positive", remedy=f"write {RATE}")
-    return rate
-
-
 def read_lag(text: str) -> Range:
     """Return the ends of a range of time constants in s."""
     return range_of("--lag", text, LAG) or (Fraction(0), Fraction(0))
 
 
 def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
-    """Read one quantity, or two with ``..`` between them; None where there is no text."""
+    """Read one quantity, or two with ``..`` between them; None without a text."""
     if text is None:
         return None
     remedy = f"write {option} '{kind.example}'"

@@ -43,34 +43,20 @@ def reproduce(
         note(f"page written to {html}")
     for row in drifted(table):
         insist(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
-    return Answer(
-        lambda: _summary(table),
-        lambda: _print(table),
-        exit_codes.unless(drifted(table)),
-    )
+    return Answer(lambda: _summary(table), lambda: _print(table), exit_codes.unless(drifted(table)))
 
 
 def _summary(table: tuple[ReproducedValue, ...]) -> dict[str, Any]:
     from dataclasses import asdict
 
     from nrs_design.thesis.comparison import drifted
-    from nrs_design.thesis.table import (
-        CONVERTED,
-        count_verdicts,
-        counts_line,
-        printed_errors,
-    )
+    from nrs_design.thesis.table import CONVERTED, count_verdicts, counts_line, printed_errors
 
     return {
         "summary": counts_line(table),
         "counts": count_verdicts(table),
         "errors_of_the_print": [
-            {
-                "id": error.id,
-                "where": error.where,
-                "about": error.about,
-                "rows": [row.name for row in touched],
-            }
+            asdict(error) | {"rows": [row.name for row in touched]}
             for error, touched in printed_errors(table)
         ],
         "drift": [row.name for row in drifted(table)],
@@ -82,30 +68,20 @@ def _summary(table: tuple[ReproducedValue, ...]) -> dict[str, Any]:
 def _print(table: tuple[ReproducedValue, ...]) -> None:
     from nrs_design.thesis.table import CONVERTED, counts_line, format_within, printed_errors
 
-    cells = [
+    off = ["off the print\n(its precision)", "off our reference\n(drift beyond)"]
+    print_table(
+        "",
+        ["section", "quantity", "printed", "recomputed", "unit", *off, "verdict"],
         [
-            row.section,
-            row.name,
-            row.printed,
-            row.value or "",
-            row.unit,
-            format_within(row.deviation, row.precision),
-            format_within(row.drift, row.limit),
-            str(row.verdict),
-        ]
-        for row in table
-    ]
-    columns = [
-        "section",
-        "quantity",
-        "printed",
-        "recomputed",
-        "unit",
-        "off the print\n(its precision)",
-        "off our reference\n(drift beyond)",
-        "verdict",
-    ]
-    print_table("", columns, cells)
+            [
+                *(row.section, row.name, row.printed, row.value or "", row.unit),
+                format_within(row.deviation, row.precision),
+                format_within(row.drift, row.limit),
+                str(row.verdict),
+            ]
+            for row in table
+        ],
+    )
     for row in table:
         if row.note or row.fitted:
             fitted = f"Fitted: {row.fitted}. " if row.fitted else ""

@@ -10,6 +10,7 @@ from nrs_design.spec import read_spec
 from tests.identification import signals
 from tests.identification.support import NOSE, SINUSOIDS, SOFT, quick, record, write_csv
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, document_of, run
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
@@ -73,16 +74,7 @@ def test_a_doubt_is_no_success(tmp_path):
     assert "warning: used comes 6.23 samples before raw" in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["loop.csv", "--command", "raw"], "Missing option"),
-        (["loop.csv", "--command", "raw", "--measured", "usd"], "there is no column 'usd' to map"),
-        (["loop.csv", "--command", "raw", "--measured", "raw"], "name two columns"),
-        (["loop.csv", "--command", "time_s", "--measured", "raw"], "the column of --command"),
-        (["none.csv", "--command", "raw", "--measured", "used"], "cannot be read"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "message"), rows(__file__, "test_wrong_delays"))
 def test_wrong_delays(tmp_path, arguments, message):
     (tmp_path / "loop.csv").write_text("time_s,raw,used\n" + "0,1,2\n" * 60)
     done = run("identify", "delay", *arguments, cwd=tmp_path, code=2)
@@ -137,13 +129,15 @@ def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
     arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
-    kept = run(*arguments, "-q", cwd=tmp_path, code=0)
+    kept = run(*arguments, "-q", cwd=tmp_path, code=3)
     assert kept.stderr.startswith(
         "warning: stiffness: the range from 1 record is 27.8 times narrow"
     )
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
-    kept = run(*arguments, cwd=tmp_path, code=0)
+    kept = run(*arguments, cwd=tmp_path, code=3)
     assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
+    assert "the gate fails on its doubts until accept_doubt says why" in kept.stderr
+    assert "NRS107 missed" in run("gate", spec, "--no-reports", cwd=tmp_path, code=1).stdout
     assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
     assert "no longer there" not in kept.stderr
     soft = read_spec(spec).spec.environments["soft"]
@@ -215,14 +209,6 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
         assert any(said in doubt for doubt in read_spec(spec).spec.environments["soft"].doubts)
 
 
-@pytest.mark.parametrize(
-    ("option", "message"),
-    [
-        (("--set", "start=99"), "lie between start and end"),
-        (("--covers", "tolerance"), "needs several records"),
-        (("--environment", "soft"), "name a spec by --write, too"),
-        (("--preload", "1 N"), "--preload: "),
-    ],
-)
+@pytest.mark.parametrize(("option", "message"), rows(__file__, "test_wrong_options_of_tissue"))
 def test_wrong_options_of_tissue(tmp_path, option, message):
     assert message in run("identify", "tissue", SOFT[0], *option, cwd=tmp_path, code=2).stderr

@@ -11,6 +11,7 @@ from nrs_design.identification.tables import table as tables
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tables.table import read_table
 from tests.identification.support import write_csv
+from tests.tables import rows
 
 TIME = np.arange(200) / 100
 DEFLECTION = 0.005 * (1 - np.cos(3 * TIME))
@@ -68,13 +69,7 @@ def test_what_a_record_may_be(tmp_path, columns):
 
 
 @pytest.mark.parametrize(
-    ("header", "scale", "unit", "is_angle"),
-    [
-        ("time_s,command_rpm,angle_rad", 1.0, "rpm", True),
-        ("time_s,command_mV,velocity_rad_s", 1e-3, "V", False),
-        ("time_s,command_counts,velocity_rpm", 1.0, "counts", False),
-        ("Time [s],Command [A],Velocity [deg/s]", 1.0, "A", False),
-    ],
+    ("header", "scale", "unit", "is_angle"), rows(__file__, "test_commands_and_outputs")
 )
 def test_commands_and_outputs(tmp_path, header, scale, unit, is_angle):
     """A command that was cut off is still what was commanded."""
@@ -138,16 +133,7 @@ def test_files_that_cannot_be_read(tmp_path):
         read_table(tmp_path, LAYOUTS, {})
 
 
-@pytest.mark.parametrize(
-    ("entries", "message"),
-    [
-        (["force_N"], "is not a pair"),
-        (["force_N="], "is not a pair"),
-        (["weight_kg=w"], "no column of ours"),
-        (["force_dyn=Fz"], "has the unit 'dyn'"),
-        (["force_N=a", "force_N=b"], "mapped twice"),
-    ],
-)
+@pytest.mark.parametrize(("entries", "message"), rows(__file__, "test_wrong_mappings"))
 def test_wrong_mappings(entries, message):
     with pytest.raises(DataError, match=message):
         parse_mapping(entries)

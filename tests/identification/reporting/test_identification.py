@@ -31,7 +31,7 @@ def test_tissue_page(tissue):
     page = render_html(tissue)
     assert '<body class="identified">' in page
     assert page.count("SYNTHETIC") >= 5
-    for text in ("Comparison of laws", "Doubts", "At the pivot", "BIC"):
+    for text in ("Comparison of laws", "Doubts", "at the pivot", "BIC"):
         assert text in page
     assert "certificate" not in page
     assert [item.name for item in tissue.illustrations] == ["fit-1", "fit-2", "fit-3"]

@@ -13,6 +13,8 @@ from tests.identification import runs
 from tests.identification.runs import SAMPLED, SOFT, check, judged, log
 from tests.support import COMMUTING, ROBOT, ROOT
 
+LIMITED = replace(SOFT, saturates=3000.0)
+
 
 def test_bounds_of_the_spec():
     assert (SOFT.torque, SOFT.transitions, SOFT.delay, SOFT.latency) == (0.3, None, None, "")
@@ -23,7 +25,7 @@ def test_bounds_of_the_spec():
 
 
 def test_a_good_run(tmp_path):
-    found = judged(log(tmp_path), command_limit=3000)
+    found = judged(log(tmp_path), LIMITED)
     assert {c.name: str(c.status) for c in found.checks} == {
         "stiffness": "not judged",
         "contact": "not judged",
@@ -88,14 +90,16 @@ def test_nothing_to_touch_leaves_nothing_open(tmp_path):
 def test_saturation_and_force(tmp_path):
     t, angle, torque, command, mode = runs.run()
     torque = torque + np.where(np.arange(len(t)) == 3000, 0.3, 0.0)
-    found = judged(log(tmp_path, (t, angle, torque, command, mode)), command_limit=1990.0)
+    found = judged(
+        log(tmp_path, (t, angle, torque, command, mode)), replace(SOFT, saturates=1990.0)
+    )
     assert check(found, "force").first.time == pytest.approx(6.0)
     saturated = check(found, "saturation")
     assert saturated.first.time == pytest.approx(t[np.argmax(np.abs(np.round(command, 2)) >= 1990)])
     # A reading above the limit that noise explains is no violation.
     noisy = log(tmp_path, runs.run(stiffness=52.0, noise=0.02))
     assert check(judged(noisy), "force").status == "undecided"
-    assert "give --command-limit" in check(judged(log(tmp_path)), "saturation").measured
+    assert "give the spec `limits: command`" in check(judged(log(tmp_path)), "saturation").measured
 
 
 def test_a_strange_mode(tmp_path):
@@ -107,7 +111,7 @@ def test_a_strange_mode(tmp_path):
 
 def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path):
     bounds = read_run_bounds(read_spec(ROBOT / "concha.nrs.yaml"))
-    unseen = check(judged(log(tmp_path), bounds, command_limit=3000), "preload of concha")
+    unseen = check(judged(log(tmp_path), bounds), "preload of concha")
     assert (unseen.status, unseen.allowed) == ("not judged", "0.1 rad to 0.3 rad")
     assert SOFT.preloads == {}
 
@@ -188,8 +192,8 @@ def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
 )
 def test_a_robot_is_judged_in_the_unit_that_it_takes(tmp_path, column, command):
     csv = runs.text(*runs.run()).replace("command_rpm", f"command_{column}")
-    bounds = replace(SOFT, command=command)
-    found = check(judged(log(tmp_path, csv=csv), bounds, command_limit=1e4), "saturation")
+    bounds = replace(SOFT, command=command, saturates=1e4)
+    found = check(judged(log(tmp_path, csv=csv), bounds), "saturation")
     assert found.allowed == f"below 10000 {command}"
     largest = float(found.measured.split()[2])
     assert largest == pytest.approx(2000 * np.radians(1) if "deg" in column else 2000, rel=1e-3)
@@ -212,7 +216,7 @@ def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
 def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
     known = replace(SOFT, saturates=1500.0)
     assert check(judged(log(tmp_path), known), "saturation").status == "outside"
-    found = check(judged(log(tmp_path), known, command_limit=3000.0), "saturation")
+    found = check(judged(log(tmp_path), LIMITED), "saturation")
     assert (found.status, found.allowed) == ("inside", "below 3000 rpm")
 
 

@@ -10,6 +10,7 @@ from nrs_design.spec import read_spec
 from tests.identification import runs
 from tests.identification.runs import check, judged, log
 from tests.support import SOFT_TISSUE
+from tests.tables import rows
 
 
 def with_switching(tmp_path, rules):
@@ -67,14 +68,7 @@ def test_a_log_with_a_row_for_every_sample_misses_no_stay(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("rules", "cut", "status"),
-    [
-        ("{dwell_time: 2 s}", (1.0, 1.1), "undecided"),
-        ("{longest_dwell_time: 2.45 s}", (1.0, 1.1), "outside"),
-        ("{transitions: [[insertion, withdrawal]]}", (1.0, 1.1), "outside"),
-        ("{transitions: [[insertion, withdrawal]]}", (4.9, 5.1), "undecided"),
-        ("{longest_dwell_time: 8 s}", (1.0, 1.1), "undecided"),
-    ],
+    ("rules", "cut", "status"), rows(__file__, "test_missing_rows_may_hide_switches")
 )
 def test_missing_rows_may_hide_switches(tmp_path, rules, cut, status):
     """Neither inside, nor outside by what would need the rows."""
@@ -87,7 +81,7 @@ def test_missing_rows_may_hide_switches(tmp_path, rules, cut, status):
 
 def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
     rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
-    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    found = judged(log(tmp_path), with_switching(tmp_path, rules))
     stays = check(found, "dwell times")
     assert stays.status == "not judged"
     assert "name contacts" in stays.measured

@@ -1,9 +1,12 @@
 """When a record does not determine a law, that is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.tissue.doubts import structure
 from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.models.contact import (
     LAWS,
@@ -16,6 +19,7 @@ from nrs_design.models.contact import (
 )
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow, source
+from tests.tables import rows
 
 
 def doubts(kind, law, motion, noise=0.01, resolution=0.0):
@@ -45,15 +49,7 @@ def test_what_a_record_does_not_determine(kind, law, motion, noise, said):
     assert bool(text) == bool(said)
 
 
-@pytest.mark.parametrize(
-    ("times", "said"),
-    [
-        ((1, 1e3), "spans 6.91 m: is that its unit?"),
-        ((1, 1e-3), "e-06 m: is that its unit?"),
-        ((1e3, 1), "the steps of time are 10 s: is that their unit?"),
-        ((1e-3, 1), "1e-05 s: is that their unit?"),
-    ],
-)
+@pytest.mark.parametrize(("times", "said"), rows(__file__, "test_another_unit_is_suspected"))
 def test_another_unit_is_suspected(times, said):
     motion = quick()
     made = Motion(times[0] * motion.time, times[1] * motion.deflection)
@@ -76,3 +72,69 @@ def test_a_tissue_that_is_torn():
     torn = TissueRecord(source("torn"), Motion(time, 0.0005 * time), force, False)
     for kind in LAWS.values():
         assert any("the residual is" in doubt for doubt in fit_record(kind, torn).doubts)
+
+
+def test_structure_is_found_and_noise_is_none():
+    generator = np.random.default_rng(1)
+    x, noise = generator.uniform(-1, 1, 3000), 0.1 * generator.standard_normal(3000)
+    size, p = structure(x, x**2 + noise)
+    assert abs(size - np.std(x**2)) < 0.02
+    assert p < 1e-100
+    size, p = structure(x, noise)
+    assert size < 0.01
+    assert p > 0.001
+
+
+def doubts_of_force(kind, force, motion=None):
+    motion = motion or quick(1)
+    force = force(motion) + 0.02 * np.random.default_rng(1).standard_normal(len(motion))
+    return "; ".join(fit_record(kind, TissueRecord(source("a"), motion, force, False)).doubts)
+
+
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (lambda m: 3.0 * np.expm1(m.deflection / 0.002), "deflection: the tissue is not linear"),
+        (KelvinVoigt(400.0, 60.0).simulate, "follow the velocity: the law has another damping"),
+        (lambda m: 400.0 * m.deflection + 0.3 * np.sin(m.time), "not white but wander with time"),
+    ],
+    ids=["stiffens", "damped", "tare wanders"],
+)
+def test_what_the_law_does_not_have_is_named(force, said):
+    assert said in doubts_of_force(Elastic, force)
+
+
+@pytest.mark.slow
+def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
+    """At its largest deflection it has its least force."""
+    time = np.arange(4000) / 20
+    motion = Motion(time, 0.003 * np.clip(time / 0.5, 0, 1))
+    data = record(Maxwell(400.0, 8000.0), motion, 0.01, 1)
+    for kind in LAWS.values():
+        assert "opposite signs" not in "; ".join(fit_record(kind, data).doubts)
+    pulled = replace(record(Elastic(400.0), quick(1), 0.02, 1), force=-400.0 * quick(1).deflection)
+    for kind in LAWS.values():
+        assert "opposite signs" in "; ".join(fit_record(kind, pulled).doubts)
+
+
+def test_an_interval_that_reaches_zero():
+    motion = quick(1)
+    generator = np.random.default_rng(5)
+    data = TissueRecord(source("n"), Motion(motion.time, motion.deflection),
+                        generator.standard_normal(len(motion)), False)  # fmt: skip
+    fit = fit_record(Elastic, data)
+    assert "the interval of k reaches 0" in "; ".join(fit.doubts)
+    # It does, at any confidence, and grows with it.
+    (small,), (middle,), (large,) = (fit.intervals(level) for level in (0.5, 0.95, 0.99))
+    assert small.low == middle.low == large.low == 0.0
+    assert small.high < middle.high < large.high < np.inf
+
+
+@pytest.mark.parametrize("b", [0.5, 2.0, 20.0])
+def test_a_wrong_sign_is_named_beside_strong_relaxation(b):
+    """The faster it relaxes, the more the force follows the velocity alone."""
+    data = record(Maxwell(1.129, b), slow(1), 0.01, 1)
+    turned = replace(data, force=-data.force)
+    for kind in (Elastic, Maxwell):
+        assert "opposite signs" in "; ".join(fit_record(kind, turned).doubts)
+        assert "opposite signs" not in "; ".join(fit_record(kind, data).doubts)

@@ -3,9 +3,10 @@
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.tissue.settings import parse_arm, read_preparation
-from nrs_design.identification.tissue.trial import Preparation
+from nrs_design.identification.cli.identify import parse_arm
+from nrs_design.identification.tissue.trial import Preparation, read_preparation
 from nrs_design.models.contact import Elastic
+from tests.tables import rows
 
 
 def test_every_field_can_be_set():
@@ -15,14 +16,7 @@ def test_every_field_can_be_set():
 
 
 @pytest.mark.parametrize(
-    ("entry", "message"),
-    [
-        ("start=nan", "'nan' is no value of start"),
-        ("end=soon", "'soon' is no value of end"),
-        ("contact=maybe", "'maybe' is no value of contact"),
-        ("negate=yes", "'yes' is no value of negate"),
-        ("side=1", "'side=1' is no setting of a record"),
-    ],
+    ("entry", "message"), rows(__file__, "test_what_is_none_is_refused_with_what_to_write")
 )
 def test_what_is_none_is_refused_with_what_to_write(entry, message):
     with pytest.raises(DesignError) as caught:
@@ -37,17 +31,7 @@ def test_thesis_arm():
     assert Elastic(747.1461).at_pivot(arm).k == pytest.approx(43.0356, abs=5e-5)
 
 
-@pytest.mark.parametrize(
-    ("text", "rotational", "reason"),
-    [
-        ("0.24 m", True, "are rotational"),
-        ("0 m", False, "not positive"),
-        ("-0.24 m", False, "not positive"),
-        ("0.24", False, "unit"),
-        ("0.24 N", False, "not a length"),
-        ("240 m", False, "longer than any arm"),
-    ],
-)
+@pytest.mark.parametrize(("text", "rotational", "reason"), rows(__file__, "test_bad_arm"))
 def test_bad_arm(text, rotational, reason):
     with pytest.raises(DataError, match=reason):
         parse_arm(text, rotational=rotational)

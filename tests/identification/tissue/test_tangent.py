@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue.identify import identify_tissue
-from nrs_design.identification.tissue.tangent import check_preload
+from nrs_design.identification.tissue.pool import check_preload
 from nrs_design.identification.write_spec import merge_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley
 from nrs_design.spec import parse_spec, read_spec
@@ -36,7 +36,7 @@ def test_the_true_tangents_are_in_the_range(count):
 
 
 def written(found):
-    text = merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
+    text = merge_tissue(read_spec(SOFT_TISSUE), found, None, None).text
     soft = parse_spec(text).environments["soft"]
     for quantity, true in zip((soft.stiffness, soft.damping), LAW.tangent(0.003), strict=True):
         low, high = quantity.range
@@ -59,7 +59,7 @@ def test_it_is_written_as_the_law_that_it_is():
     # Written again as another law, its keys are gone.
     elastic = identify_tissue([record(Elastic(750.0), quick(), 0.1)], "elastic")
     loaded = replace(read_spec(SOFT_TISSUE), text=text, spec=parse_spec(text))
-    text = merge_tissue(loaded, elastic, None, None)
+    text = merge_tissue(loaded, elastic, None, None).text
     plain = parse_spec(text).environments["soft"]
     assert plain.model == "elastic"
 

@@ -5,6 +5,7 @@ import typer
 
 from nrs_design.errors import PoseError
 from nrs_design.robot.cli.options import read_pose, three_numbers
+from tests.tables import rows
 
 
 def test_three_numbers():
@@ -24,11 +25,7 @@ def test_a_pose_up_to_a_right_angle(robot):
 
 @pytest.mark.parametrize(
     ("text", "said", "remedy"),
-    [
-        ("10,0,0.2", "phi = 10 rad", "10 deg are 0.174533"),
-        ("0,-20,0.2", "psi = -20 rad", "-20 deg are -0.349066"),
-        ("0,0,200", "d = 200 m", "200 mm are 0.2"),
-    ],
+    rows(__file__, "test_other_units_are_doubted_with_the_number_that_is_meant"),
 )
 def test_other_units_are_doubted_with_the_number_that_is_meant(robot, text, said, remedy):
     with pytest.raises(PoseError, match=said) as caught:

@@ -5,25 +5,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.robot.models import correction
 from nrs_design.robot.models.correction import (
     DEPTH_SINES,
-    TABLE_3_5,
     correct,
     correction_coefficients,
-    tilt_tables,
-    to_csv,
+    tilt_table,
 )
 
 
-def test_table_for_the_controller(robot):
-    (table,) = tilt_tables(robot, np.radians([-40.0, 0.0]), DEPTH_SINES)
-    lines = to_csv(table).splitlines()
-    assert lines[0].split(",")[:4] == ["theta4_deg", "K1", "K2", "K3"]
-    assert [float(number) for number in lines[1].split(",")] == pytest.approx(
-        [-40, *table.mean_ratio[0], *table.least_squares[0]], abs=1e-6
-    )
-    assert len(lines) == 3
+def test_coefficients_over_the_tilt(robot):
+    table = tilt_table(robot, np.radians([-40.0, 0.0]), DEPTH_SINES)
+    assert table.mean_ratio.shape == (2, 3)
+    assert table.mean_ratio[0, 2] == pytest.approx(2.162, abs=6e-4)
+    row = correction_coefficients(robot.tilted(table.tilt[0]), DEPTH_SINES)
+    assert (table.least_squares[0] == row.least_squares).all()
 
 
 @given(st.lists(st.floats(0.5, 3), min_size=3, max_size=3))
@@ -43,19 +38,3 @@ def test_least_squares_leaves_the_least_error():
         other = np.sqrt(np.mean((T - (found.least_squares + step) * t) ** 2, axis=0))
         assert np.all(found.least_squares_error < other)
     assert np.all(found.least_squares_error <= found.mean_ratio_error)
-
-
-def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatch):
-    """To the last bit, and a motion that is in both is moved once."""
-    tilts = np.radians([-40.0, 0.0])
-    apart = [tilt_tables(robot, tilts, group)[0] for group in (DEPTH_SINES, TABLE_3_5)]
-    moved = []
-    holds = correction.gravity_torque
-    monkeypatch.setattr(correction, "gravity_torque", lambda *at: moved.append(at) or holds(*at))
-    together = tilt_tables(robot, tilts, DEPTH_SINES, TABLE_3_5)
-    for one, other in zip(together, apart, strict=True):
-        assert (one.mean_ratio == other.mean_ratio).all()
-        assert (one.least_squares == other.least_squares).all()
-    assert len(moved) == len(tilts) * len({*DEPTH_SINES, *TABLE_3_5})
-    row = correction_coefficients(robot.tilted(tilts[0]), TABLE_3_5)
-    assert (together[1].mean_ratio[0] == row.mean_ratio).all()

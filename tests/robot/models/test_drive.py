@@ -20,7 +20,7 @@ def test_free_motor_answers_as_identified(drive):
 
 def test_friction_at_the_joint(drive):
     # 276.575 rpm over 2.7044e5 rpm/(N m), behind 905:1.
-    assert drive.friction_torque == pytest.approx(276.575 / 2.7044e5 * 905, rel=1e-12)
+    assert drive.friction == pytest.approx(276.575 / 2.7044e5 * 905, rel=1e-12)
 
 
 def changed(old, new):

@@ -36,8 +36,8 @@ def test_peaks_are_reached_and_not_exceeded(robot):
         np.max([np.abs(getattr(one, name)).max(axis=0) for one in motions], axis=0)
         for name in ("velocity", "acceleration")
     )
-    assert velocity == pytest.approx(peaks.velocity)
-    assert acceleration == pytest.approx(peaks.acceleration)
+    assert velocity == pytest.approx(peaks[0])
+    assert acceleration == pytest.approx(peaks[1])
 
 
 def test_unreachable_poses_are_left_out(robot):

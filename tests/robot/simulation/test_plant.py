@@ -18,11 +18,11 @@ from nrs_design.robot.models.body import MASSLESS
 from nrs_design.robot.models.dynamics import gravity_torque, mass_and_bias, mass_matrix
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics, inverse_kinematics
 from nrs_design.robot.simulation.plant import (
-    DriveArrays,
-    DryFriction,
     JointState,
     Mechanism,
     Stepper,
+    batch_of,
+    slide_or_stick,
 )
 
 HOME = np.array([[0.02, -0.05, 0.2]])
@@ -50,7 +50,7 @@ def test_step_response_of_the_linear_loop(spec, smooth):
     state = JointState(*np.zeros((3, 1, 3)))
     reference = JointMotion(np.ones((1, 3)), *np.zeros((2, 1, 3)))
     stepper = Stepper.at(
-        DriveArrays.of([smooth]), period, *Weightless().mass_and_bias(state.position, None)
+        batch_of([smooth]), period, *Weightless().mass_and_bias(state.position, None)
     )
     trace = []
     for _ in range(round(0.3 / period)):
@@ -88,7 +88,7 @@ def test_the_weight_deflects_the_joints_unless_it_is_fed_forward(spec, tilted, s
     for _ in range(500):
         command, memory = law.step(memory, reference, law.encoder_ratio * state.position)
         matrices = mechanism.mass_and_bias(state.position, state.velocity)
-        state = Stepper.at(DriveArrays.of([smooth]), law.period, *matrices).step(state, command)
+        state = Stepper.at(batch_of([smooth]), law.period, *matrices).step(state, command)
     weight = gravity_torque(tilted, direct_kinematics(tilted, state.position))
     per_rad = smooth.torque_per_command * float(law.motion.Kp) * smooth.encoder_ratio
     left = 0 * weight if fed else weight / per_rad
@@ -100,11 +100,11 @@ def test_friction_holds_what_is_within_its_limit(tilted, drive):
     # The weight less the torque of the drive is within the friction for the first robot only.
     poses = np.repeat(HOME, 2, axis=0)
     weight = gravity_torque(tilted, poses)
-    missing = np.array([[0.99], [1.01]]) * drive.friction_torque
+    missing = np.array([[0.99], [1.01]]) * drive.friction
     command = (weight - missing) / drive.torque_per_command
     state = at_rest(tilted, poses)
     stepper = Stepper.at(
-        DriveArrays.of([drive, drive]),
+        batch_of([drive, drive]),
         1e-3,
         *Mechanism(tilted).mass_and_bias(state.position, state.velocity),
     )
@@ -117,10 +117,10 @@ def test_friction_holds_what_is_within_its_limit(tilted, drive):
 
 def test_a_joint_that_stops_stays_without_chatter(drive):
     # Thrown at 0.1 rad/s without a command, the rotor comes to rest as J w' = -damping w - F says.
-    stop = drive.inertia / drive.damping * np.log1p(0.1 * drive.damping / drive.friction_torque)
+    stop = drive.inertia / drive.damping * np.log1p(0.1 * drive.damping / drive.friction)
     state = JointState(np.zeros((1, 3)), np.full((1, 3), 0.1), np.zeros((1, 3)))
     h = 1e-3
-    stepper = Stepper.at(DriveArrays.of([drive]), h, np.zeros((1, 3, 3)), np.zeros((1, 3)))
+    stepper = Stepper.at(batch_of([drive]), h, np.zeros((1, 3, 3)), np.zeros((1, 3)))
     speeds = []
     for _ in range(200):
         state = stepper.step(state, np.zeros((1, 3)))
@@ -157,14 +157,14 @@ def test_agrees_with_an_independent_integrator(tilted, smooth):
         state = start
         for _ in range(round(0.1 / h)):
             matrices = mechanism.mass_and_bias(state.position, state.velocity)
-            state = Stepper.at(DriveArrays.of([smooth]), h, *matrices).step(state, command)
+            state = Stepper.at(batch_of([smooth]), h, *matrices).step(state, command)
         errors.append(np.abs(state.position[0] - exact).max())
     assert errors[0] < 1e-3 * moved
     assert errors[1] < 0.6 * errors[0]
 
 
 def test_energy_is_exact_while_the_matrices_hold(drive):
-    drives, h = DriveArrays.of([drive]), 2e-3
+    drives, h = batch_of([drive]), 2e-3
     mass = np.array([[[0.2, 0.05, 0.01], [0.05, 0.15, 0.02], [0.01, 0.02, 0.1]]])
     bias = np.array([[1.0, -0.5, 0.3]])
     state = JointState(np.zeros((1, 3)), np.array([[0.1, -0.2, 0.05]]), np.zeros((1, 3)))
@@ -191,7 +191,7 @@ def test_massless_robot_is_the_motor(tilted, drive):
     mass, bias = Mechanism(bare).mass_and_bias(inverse_kinematics(bare, HOME), np.ones((1, 3)))
     assert not np.any(mass)
     assert not np.any(bias)
-    stepper = Stepper.at(DriveArrays.of([drive]), 1e-3, mass, bias)
+    stepper = Stepper.at(batch_of([drive]), 1e-3, mass, bias)
     assert stepper.mass[0] == pytest.approx(905**2 * 14.81e-7 * np.eye(3), rel=1e-12)
 
 
@@ -199,8 +199,7 @@ ZERO = np.zeros((1, 3))
 
 
 def solve(inertia, impulse, limit, start=ZERO):
-    problem = DryFriction.of(np.array([inertia]))
-    return problem.slide_or_stick(np.array([impulse]), np.array([limit]), start)[0]
+    return slide_or_stick(*map(np.array, ([inertia], [impulse], [limit])), start)[0]
 
 
 def test_uncoupled_joints_slide_or_stick():

@@ -7,7 +7,7 @@ import pytest
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import DesignError
 from nrs_design.robot.simulation.simulate import simulate
-from nrs_design.robot.simulation.track import CONTROLLERS, build_track
+from nrs_design.robot.simulation.track import CONTROLLERS, build_tracks
 from tests.support import ROOT
 
 # Fast, after a short hold, so that little simulated time shows everything.
@@ -16,11 +16,12 @@ PERIOD, HOLD = 2.0, 0.5
 
 @pytest.fixture(scope="module")
 def tracks(spec, tilted):
-    return [shortened(build_track(spec, tilted, name, PERIOD)) for name in CONTROLLERS]
-
-
-def shortened(track):
-    return replace(track, experiments=tuple(replace(e, hold=HOLD) for e in track.experiments))
+    """Each controller moves d, phi and psi in turn."""
+    return [
+        replace(one, experiment=replace(one.experiment, hold=HOLD))
+        for name in CONTROLLERS
+        for one in build_tracks(spec, tilted, name, PERIOD)
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -54,9 +55,11 @@ def test_measured_is_actual_to_the_count(records):
 
 
 @pytest.mark.slow
-def test_more_steps_change_nothing(tracks, records):
+def test_more_steps_change_nothing(tracks, records, monkeypatch):
     # Two steps for each tick, and mass and bias anew at every one of them.
-    again = simulate([track.only("psi") for track in tracks[:2]], steps=2, held_phase=0.0)
+    monkeypatch.setattr("nrs_design.robot.simulation.simulate.STEPS_PER_TICK", 2)
+    monkeypatch.setattr("nrs_design.robot.simulation.simulate.HELD_PHASE", 0.0)
+    again = simulate([tracks[2], tracks[5]])
     for fine, coarse in zip(again, (records[2], records[5]), strict=True):
         moved = fine.rmse[1]
         assert coarse.rmse == pytest.approx(fine.rmse, rel=2e-3, abs=2e-3 * moved)
@@ -72,9 +75,9 @@ def test_independent_joints_beat_computed_torque(records):
 @pytest.mark.slow
 def test_tracks_that_differ_in_one_part_are_told_apart(tracks, records):
     # The same law and mechanism, another encoder and another drive.
-    track = tracks[1].only("phi")
+    track = tracks[4]
     ideal = replace(track, encoder=replace(track.encoder, counts=None))
-    smooth = replace(track, drive=replace(track.drive, coulomb_friction=0.0))
+    smooth = replace(track, drive=replace(track.drive, friction=0.0))
     rounded, exact, without_friction = simulate([track, ideal, smooth])
     assert np.array_equal(rounded.measured, records[4].measured)
     assert exact.measured == pytest.approx(exact.actual, abs=1e-12)
@@ -83,7 +86,7 @@ def test_tracks_that_differ_in_one_part_are_told_apart(tracks, records):
 
 
 def test_an_unstable_loop_is_said_to_be_one(tracks):
-    track = tracks[1].only("phi")
+    track = tracks[4]
     wild = replace(
         track,
         law=replace(track.law, motion=ProportionalDerivative(Fraction(10**7), Fraction(10**6))),
@@ -94,14 +97,14 @@ def test_an_unstable_loop_is_said_to_be_one(tracks):
 
 
 def test_too_many_ticks(tracks):
-    fine = replace(tracks[1], law=replace(tracks[1].law, period=1e-9))
+    fine = replace(tracks[3], law=replace(tracks[3].law, period=1e-9))
     with pytest.raises(DesignError, match="more than 2000000 ticks"):
         simulate([fine])
 
 
 @pytest.mark.slow
 def test_the_page_states_what_is_simulated(spec, tilted):
-    found = simulate([build_track(spec, tilted, name) for name in CONTROLLERS])
+    found = simulate([one for name in CONTROLLERS for one in build_tracks(spec, tilted, name)])
     page = (ROOT / "docs/robot/motion-control.md").read_text()
     first = page.index("| computed-torque |")
     rows = [line.strip("| ").split(" | ") for line in page[first:].splitlines()[:3]]

@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import ComputedTorque, IndependentJoint
 from nrs_design.robot.models.robot import build_robot
 from nrs_design.robot.simulation.experiment import Experiment, TrackingRecord
-from nrs_design.robot.simulation.track import CONTROLLERS, build_track, experiment_tilt
+from nrs_design.robot.simulation.track import CONTROLLERS, Encoder, build_tracks, experiment_tilt
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
@@ -14,7 +16,7 @@ UNBALANCED = TEXT[: TEXT.index("# Thesis 4.4 and its")]
 
 
 def test_three_controllers_of_the_thesis(spec, tilted):
-    torque, joint, balanced = (build_track(spec, tilted, name) for name in CONTROLLERS)
+    torque, joint, balanced = (build_tracks(spec, tilted, name)[0] for name in CONTROLLERS)
     assert isinstance(torque.law, ComputedTorque)
     assert isinstance(joint.law, IndependentJoint)
     assert joint.law.load is not None
@@ -31,13 +33,6 @@ def test_three_controllers_of_the_thesis(spec, tilted):
     assert {t.encoder.counts for t in (torque, joint, balanced)} == {8192}
 
 
-def test_experiments_one_by_one(spec, tilted):
-    track = build_track(spec, tilted, "computed-torque")
-    assert [one.experiments[0].moved for one in track.split()] == ["d", "phi", "psi"]
-    assert [one.moved for one in track.only("psi").experiments] == ["psi"]
-    assert track.only(None).experiments == track.experiments
-
-
 def test_tilt_of_the_experiments(spec):
     # Thesis 4.2 and 4.4: -28.5 deg.
     assert experiment_tilt(spec) == pytest.approx(-0.497419, abs=1e-6)
@@ -47,7 +42,7 @@ def test_tilt_of_the_experiments(spec):
 def test_a_robot_without_balance_has_no_balanced_controller():
     spec = parse_spec(UNBALANCED)
     with pytest.raises(DesignError, match="no `balance`"):
-        build_track(spec, build_robot(spec), "balanced")
+        build_tracks(spec, build_robot(spec), "balanced")
 
 
 ERROR = np.array([[0.01, 0.0, 1e-3], [-0.01, 0.02, -1e-3]])
@@ -75,3 +70,16 @@ def test_summary_in_the_units_of_the_print(record):
     assert summary["rmse"] == pytest.approx([np.degrees(0.01), np.degrees(0.02 / 2**0.5), 1.0])
     assert summary["actual_rmse"] == pytest.approx([2 * error for error in summary["rmse"]])
     assert summary["largest_command"] == [3, 5, 2]
+
+
+ENCODER = Encoder(5.0, 8192)
+angles = st.lists(st.floats(-2, 2), min_size=3, max_size=3).map(np.array)
+
+
+@given(joints=angles)
+def test_rounds_to_the_nearest_count(joints):
+    count = 2 * np.pi / 8192
+    read = ENCODER.read(joints)
+    assert np.all(np.abs(read - 5 * joints) <= count / 2 * (1 + 1e-9))
+    assert read / count == pytest.approx(np.round(read / count), abs=1e-9)
+    assert np.array_equal(ENCODER.read(read / 5), read)

@@ -5,8 +5,6 @@ import shlex
 
 import pytest
 
-from nrs_design.ros2.law import read_law
-from nrs_design.ros2.parameters import parse_nodes
 from tests.ros2.support import EXAMPLE, changed
 from tests.support import ROOT, document_of, run
 from tests.tables import rows
@@ -61,25 +59,3 @@ def test_export(spec, tmp_path):
         "withdrawal": "proved",
     }
     assert {path: path.read_bytes() for path in before} == before
-
-
-def test_all_axes_of_a_file_are_one_parameter_file(tmp_path):
-    """The controllers of z, and beside each the only one of the other axes."""
-    axes = ROOT / "docs/examples/six-axes.nrs.yaml"
-    done = run("ros2", "export", axes, "--lag", "27..33 ms", cwd=tmp_path, code=0)
-    assert "PROVED, exported to reports/six-axes.insertion.ros2.yaml" in done.stdout
-    written = (tmp_path / "reports/six-axes.insertion.ros2.yaml").read_text(encoding="utf-8")
-    nodes = parse_nodes(written, tmp_path)
-    law = read_law(next(node for node in nodes if node.name == "admittance_controller"))
-    assert [axis.selected for axis in law.axes] == [True] * 6
-    assert [float(axis.mass) for axis in law.axes] == pytest.approx([0.2, 0.2, 0.16] + [0.008] * 3)
-    assert float(law.joint_damping) == pytest.approx(450)
-    proofs = sorted((tmp_path / "reports").glob("*.insertion.*.ros2.cert.json"))
-    assert len(proofs) == 6
-    for proof in proofs:
-        assert "PROVED" in run("verify", proof, cwd=tmp_path, code=0).stdout
-    # What the file says is decided again, of every axis.
-    checked = ("--stiffness", "700..1500 N/m", "--rotational-stiffness", "30..50 N*m/rad")
-    again = ("ros2", "check", "reports/six-axes.insertion.ros2.yaml", *checked)
-    done = run(*again, "--age", "1", "--lag", "27..33 ms", cwd=tmp_path, code=0)
-    assert done.stdout.count("stable") == 6

@@ -25,7 +25,7 @@ from nrs_design.wings import load_wing, wing_of
 GROUPS = {
     "Start": ("init", "identify", "check", "explain", "schema"),
     "Design": ("optimize", "tune", "mode-logic", "simulate"),
-    "Prove": ("certify-switching", "verify", "sweep"),
+    "Prove": ("certify-switching", "verify", "sweep", "compare-methods"),
     "Ship": ("report", "gate", "export", "diff", "audit"),
     "Robot": ("robot", "ros2", "reproduce"),
 }

@@ -56,6 +56,8 @@ ALLOWED = {
     # Margins are polynomials that are affine in the parameters of these two contacts alone.
     ("nrs_design.design.proved_margins", "Elastic"),
     ("nrs_design.design.proved_margins", "KelvinVoigt"),
+    # The library for Coq has theorems about one kind of evidence.
+    ("nrs_design.exporters.formats.coq", "FormsOnGraph"),
 }
 
 

@@ -33,7 +33,6 @@ REACHED = {
     ("nrs_design.api.identified", "identification", "api.library"),
     ("nrs_design.api.study", "identification", "api.library"),
     # A recorded command is a record.
-    ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }
 STAGES = {"models", "design", "loop", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
@@ -285,6 +284,7 @@ def test_only_the_pipeline_calls_the_stages():
     assert {verb for name, verb in callers if name == "nrs_design.pipeline"} == VERBS
     assert {name for name, _ in callers} == {
         "nrs_design.pipeline",
+        "nrs_design.exporters.monitor_limits",
         "nrs_design.loop.assemble",
         "nrs_design.thesis.switching",
         "nrs_design.ros2.check",
@@ -343,7 +343,7 @@ def test_a_search_proposes_and_never_checks():
     assert checking == {place}
     takers = ("take_candidate", "first_accepted", "attempted")
     taking = {name for name in searches for word in takers if uses(name, word)}
-    assert taking == {place, "nrs_design.search.certify", "nrs_design.search.statements"}
+    assert taking == {place, "nrs_design.search.certify"}
     assert searches.isdisjoint(
         item.source for item in ours() if item.target == "nrs_design.search.certify"
     )

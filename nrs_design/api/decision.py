@@ -63,8 +63,9 @@ class Further:
             from nrs_design.pipeline.blocked import blocked_lines
 
             yield from (f"  {line}" for line in blocked_lines(self.blocked, loaded.path))
-        some = None if verbose else 0 if is_helped or self.relief else 1
-        yield from (f"next: {line}" for line in self.steps[:some])
+        # The most promising step alone, where nothing better was said.
+        shown = self.steps if verbose else () if is_helped or self.relief else self.steps[:1]
+        yield from (f"next: {line}" for line in shown)
 
 
 @dataclass(frozen=True, repr=False)

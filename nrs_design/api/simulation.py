@@ -186,10 +186,12 @@ class Simulation(AbstractResult):
         """
         from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
 
-        runs = [ScenarioRun(designed, one) for one in found]
-        if proof is not None:
-            asked = [(designed, proof, one) for one in found]
-            runs = [ScenarioRun(designed, a[2], hold_bounds(*a), hold_rate(*a)) for a in asked]
+        if proof is None:
+            return cls(designed, tuple(ScenarioRun(designed, run) for run in found))
+        runs = []
+        for run in found:
+            bounds = hold_bounds(designed, proof, run)
+            runs.append(ScenarioRun(designed, run, bounds, hold_rate(designed, proof, run)))
         return cls(designed, tuple(runs))
 
     def __iter__(self) -> Iterator[ScenarioRun]:

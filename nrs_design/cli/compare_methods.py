@@ -26,15 +26,17 @@ def compare_methods(spec: SpecFile, budget: Budget = None, memory: Memory = None
 
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline.certification import Overrides, search_limits
-    from nrs_design.pipeline.runs import run_certification
+    from nrs_design.pipeline.certification import Overrides, certify_design, search_limits
+    from nrs_design.pipeline.runs import run_design
 
     loaded = take_spec(spec)
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory))
     found = {}
-    for method in METHODS:
-        with progress(f"{loaded.spec.name}, {method}") as step:
-            found[method] = run_certification(loaded, method=method, limits=limits, progress=step)
+    with progress(f"comparing on {loaded.spec.name}") as step:
+        designed = run_design(loaded, step)
+        for method in METHODS:
+            step(str(method))
+            found[method] = certify_design(loaded, designed, method=method, limits=limits)
     verdicts = {str(result.certification.verdict) for result in found.values()}
     best = next((v for v in ("refuted", "proved") if v in verdicts), "inconclusive")
 

@@ -55,6 +55,7 @@ def answer_point(job: Job, values: tuple[str, ...]) -> PointAnswer:
             code = exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE
             return PointAnswer(values, code, error=error_summary(error))
         except Exception as error:
+            # The parser of the command line has errors of its own.
             if hasattr(error, "format_message"):
                 code, message = exit_codes.USAGE, error.format_message()
             else:

@@ -190,10 +190,8 @@ def _admittance_at(
 
 def _objective(problem: ImpedanceProblem, nodes: int, violation: Objective | None) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    cost, stabilizing = (
-        _cost_by(problem, nodes),
-        problem.stable or partial(stabilizes, problem.loop),
-    )
+    cost = _cost_by(problem, nodes)
+    stabilizing = problem.stable or partial(stabilizes, problem.loop)
 
     def objective(u: FloatArray, v: FloatArray) -> FloatArray:
         Mt, Bt = _admittance_at(problem, u, v)

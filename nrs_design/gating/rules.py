@@ -2,7 +2,7 @@
 
 `rules.toml` holds the texts. Ids are stable: they stand in lock files, annotations, baselines of
 code scanners and in the ``rule`` of every error in `nrs_design.errors`. An id is never given a
-second meaning.
+second meaning; NRS111 and NRS112 were used before 1.0.
 """
 
 from __future__ import annotations

@@ -128,7 +128,9 @@ def constant_parameters(parameters: Mapping[str, Interval]) -> tuple[ConstantPar
 def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator[LocatedMode]:
     """Yield the corners of one mode; parameters that it does not depend on make none.
 
-    An `InternalError` if the matrix halfway is not the mean of the corners.
+    A matrix that is affine in the parameters is a convex combination of its corners everywhere in
+    the box: what decreases in all corners in continuous time decreases in the whole box. An
+    `InternalError` if the matrix halfway is not the mean of the corners.
     """
     own = {name: interval for name, interval in parameters.items() if name in mode.parameters}
     others = {name: interval.nominal for name, interval in parameters.items()}

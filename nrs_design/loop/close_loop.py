@@ -106,10 +106,8 @@ def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> L
     With springs, free motion ends at rest in one place, and is a mode on demand only: that contact
     is lost at any deflection is more than happens.
     """
-    environments, sprung = (
-        state.environments,
-        {bool(c.law.spring) for c in state.design.controllers},
-    )
+    environments = state.environments
+    sprung = {bool(c.law.spring) for c in state.design.controllers}
     loss = Loss.of(contact, environments, state.design, slowed=False)
     modelled = (
         loss in (Loss.ANYWHERE, Loss.SURFACE)

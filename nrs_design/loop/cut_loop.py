@@ -209,7 +209,7 @@ class ProcessorAxis(AbstractAxis):
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare
     ) -> Rows:
         """Return the map of a period in which a share of the force acts."""
-        if cut is _OPENED and self.takes is Takes.VELOCITY:
+        if cut.carried and not cut.sensed and self.takes is Takes.VELOCITY:
             # A spring that draws the measured position enters the law where the force does, so it
             # is cut as well.
             law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})

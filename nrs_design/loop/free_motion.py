@@ -87,7 +87,8 @@ def flights_of(
 def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
     """Return the environments whose forces tell a flight at a positive deflection.
 
-    Without damping nothing lags, and there are none. Beside damped environments springs count, too.
+    Without damping nothing lags, and there are none. Beside damped environments springs count, too:
+    what flies because every force would pull must not be pushed by a spring instead.
     """
     environments = tuple(environments)
     springs = all(law.is_spring for e in environments for law in e.corners)

@@ -29,6 +29,15 @@ from nrs_design.spec.units import THESIS_COMMAND
 UNCOUPLED = assume("uncoupled.axes")
 
 
+# Assumption about sample times, by one period for all, and by samples that are steady.
+_PERIODS = {
+    (True, True): "period.single",
+    (True, False): "period.jitter",
+    (False, True): "period.double",
+    (False, False): "period.double-jitter",
+}
+
+
 def assume_loop(
     loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
 ) -> Iterator[Assumption]:
@@ -151,9 +160,8 @@ def assume_sampled_loop(
     timing, axis = loop.calendar.timing, conditions.axis
     beyond = disturbed and "disturbances"
     single, steady = sampling.round == 1, sampling.jitter is None
-    how = ("single" if steady else "jitter") if single else "double" + "-jitter" * (not steady)
     yield assume(
-        f"period.{how}",
+        _PERIODS[single, steady],
         period=exact_text(sampling.period.exact),
         jitter=not steady and exact_text(sampling.unsteady),
         outer=not single and exact_text(sampling.outer),

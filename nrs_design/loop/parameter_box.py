@@ -48,7 +48,8 @@ class Box:
         from the formulas of the loop, and is computed again because a proof for the whole box rests
         on it: on the grid of low end, middle and high end of every axis, the matrix must be the
         mean of its two neighbors along one axis on which it is in the middle. For entries of a
-        degree of at most two in each coordinate this decides it.
+        degree of at most two in each coordinate this decides it, and the matrix at any place is a
+        mean of those at the corners around it.
         """
         known: dict[tuple[str, ...], Rows] = {}
         # Neighbors are in the middle on one axis less, so they come first.

@@ -188,8 +188,8 @@ def _physical(
 
 def _velocity_command(mode: Mode, motion: Realization | JointMotionLoop) -> LinearForm:
     """Return the velocity that the law commands in a mode: the input of its motion loop."""
-    A, k = mode.A.fractions(), motion.order - 1
-    k = _ERROR if isinstance(motion, JointMotionLoop) else k
+    A = mode.A.fractions()
+    k = _ERROR if isinstance(motion, JointMotionLoop) else motion.order - 1
     return combine((ONE, A[k]), (-ONE, motion.rates(zero(len(A)))[k]))
 
 

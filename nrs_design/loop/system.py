@@ -221,11 +221,12 @@ def _motor_command(
 ) -> tuple[tuple[Output, ...], tuple[Assumption, ...]]:
     """Return the command under disturbances, roundings included, and its assumption.
 
-    A bound from rest, below the limit of the driver, excludes saturation under the same
-    disturbances. Impedance controllers change the reference after the command, so it is the same
-    form of the states in all modes. A rounding is at most a share of other forms, so the command is
-    a mixture of rows in which every share is added or subtracted. Nothing without disturbances or a
-    limit, or for other controllers.
+    While the command stays below its limit, the driver does only what the model says: so a bound
+    from rest, below the limit, excludes saturation under the same disturbances.
+    Impedance controllers change the reference after the command, so it is the same form of the
+    states in all modes. A rounding is at most a share of other forms, so the command is a mixture
+    of rows in which every share is added or subtracted. Nothing without disturbances or a limit, or
+    for other controllers.
     """
     moving = all(law.law.commands == "velocity" for law in loop.program.laws)
     if largest is None or not channels or not moving or loop.calendar.holds:

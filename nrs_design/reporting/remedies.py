@@ -16,7 +16,7 @@ from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Bullets, Section
-from nrs_design.spec import ImpedanceControllerSpec, InteractionDesignSpec, RobotSpec
+from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Ite
     if not alone and not shortest_dwell and _takes_dwell(result):
         yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
     if isinstance(spec, InteractionDesignSpec):
-        chosen = any(isinstance(c, ImpedanceControllerSpec) for c in spec.controllers.values())
+        chosen = any(c.commands == "velocity" for c in spec.controllers.values())
         command = "optimize" if chosen else "tune"
         yield f"See which gains the goals allow: nrs-design {command} {name}"
 

@@ -100,8 +100,10 @@ def _count_decreases(system: SwitchedSystem) -> int:
 
 
 def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
-    if stay.longest is None or system.time is Time.CONTINUOUS:
-        return 1 if stay.longest is None else SAMPLES
+    if stay.longest is None:
+        return 1
+    if system.time is Time.CONTINUOUS:
+        return SAMPLES
     return int(stay.longest) - int(stay.shortest) + 1
 
 

@@ -153,7 +153,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 class ElasticSpec(AbstractEnvironmentSpec):
     """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
-    law = contact.Elastic
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.Elastic
 
     model: Literal["elastic"] = required("law of the environment: elastic, F = k delta")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
@@ -162,7 +162,7 @@ class ElasticSpec(AbstractEnvironmentSpec):
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
 
-    law = contact.KelvinVoigt
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.KelvinVoigt
 
     model: Literal["kelvin-voigt"] = required("law: kelvin-voigt, F = k delta + b ddelta/dt")
     stiffness: field.Stiffness = required(_STIFFNESS.format(which=""))
@@ -172,7 +172,7 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
 
-    law = contact.Hand
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.Hand
 
     model: Literal["hand"] = required(
         "law: hand, F = k delta + b ddelta/dt + m d2delta/dt2; contact is kept"
@@ -188,7 +188,7 @@ class HandSpec(AbstractEnvironmentSpec):
 class MaxwellSpec(AbstractEnvironmentSpec):
     """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
 
-    law = contact.Maxwell
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.Maxwell
 
     model: Literal["maxwell"] = required(
         "law: maxwell, F + (b/k) dF/dt = b ddelta/dt; no rest position, so nothing else is touched"
@@ -200,7 +200,7 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
 
-    law = contact.KelvinBoltzmann
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = required(
         "law: kelvin-boltzmann, a spring k2 in a row with a spring k1 beside a damper b"
@@ -217,7 +217,7 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 class HuntCrossleySpec(AbstractEnvironmentSpec):
     """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
 
-    law = contact.KelvinVoigt
+    law: ClassVar[type[contact.AbstractLinearLaw]] = contact.KelvinVoigt
     nonlinear = contact.HuntCrossley
 
     model: Literal["hunt-crossley"] = required(

@@ -49,10 +49,10 @@ class GoalsSpec(SpecModel, stronger="larger"):
         "largest displayed over desired impedance, or reverse, up to the bandwidth, above 1"
     )
     min_transparency: UnitFraction | None = optional(
-        "smallest |L/(1 + L)| up to the bandwidth, in (0, 1): robot over hand motion"
+        "smallest |L/(1 + L)| up to the bandwidth, in (0, 1): robot over hand motion; at a hand"
     )
     max_hand_effort: field.Impedance | None = at_most(
-        "largest |Ze/(1 + L)| up to the bandwidth in N*m*s/rad: hand torque over velocity"
+        "largest |Ze/(1 + L)| up to the bandwidth, N*m*s/rad: hand torque over velocity; at a hand"
     )
     max_creep: field.AngularVelocity | None = at_most(
         "largest velocity in free motion by errors of the sensor, such as 0.5 deg/s; impedance only"

@@ -76,7 +76,7 @@ class ActuatorSpec(IdentifiedRangesSpec, stronger="wider"):
     time_constant: field.RangedDuration = required("tau, mechanical time constant in s")
     dead_time: field.TimeRange | None = optional(_DEAD_TIME)
     load_inertia: field.RotorInertia | None = optional(
-        "inertia at the joint in kg*m^2 that environments slow; default: none does"
+        "inertia at the joint in kg*m^2 on which contact torque acts; default: it slows no motor"
     )
     range_covers: Coverage | None = optional(_COVERS)
     intervals: ActuatorIntervals | None = optional(

@@ -59,7 +59,7 @@ class BodySpec(SpecModel, stronger="neither"):
 
     mass: field.Mass = required("mass in kg, >= 0")
     center_of_mass: tuple[field.Coordinate, field.Coordinate, field.Coordinate] = required(
-        "center of mass [x, y, z] in m"
+        "center of mass [x, y, z] in the frame of the body, in m"
     )
     inertia: Literal["slender-rod", "tensor"] = required(
         "slender-rod: m l^2/12 about both axes across the length; tensor: as `tensor` says"
@@ -79,15 +79,19 @@ class BodySpec(SpecModel, stronger="neither"):
 class LegSpec(SpecModel, stronger="neither"):
     """One leg: crank and coupler move in a plane that turns about the leg's base axis."""
 
-    azimuth: field.SignedAngle = required("direction of the base axis, from x to y")
-    elbow_sign: ElbowSign = required("-1: the elbow bends outwards (thesis 3.10); 1: inwards")
+    azimuth: field.SignedAngle = required(
+        "base axis in the x-y plane of the base, from x towards y"
+    )
+    elbow_sign: ElbowSign = required(
+        "sign in `crank angle = coupler direction + sign * acos(...)`: -1 outwards (thesis 3.10)"
+    )
     l0: field.Length = required("pivot to base joint along the base axis, in m")
     l1: field.Length = required("length of the crank, in m")
     l2: field.Length = required("length of the coupler, in m")
     l3: field.Length = required("distance of the coupler's end from the endoscope axis, in m")
     crank: BodySpec = required("first link; x from the base joint, z normal to the leg's plane")
     coupler: BodySpec = required("second link; x from the elbow, z normal to the leg's plane")
-    arm: BodySpec = required("third link; x from the coupler to the endoscope, z as before")
+    arm: BodySpec = required("third link; x to the endoscope, z normal to the leg's plane")
     axis_inertia: field.MomentOfInertia = required(
         "inertia about the base axis beside the links, such as a rotor's, in kg*m^2"
     )
@@ -145,7 +149,9 @@ class DriveSpec(SpecModel, stronger="neither"):
     rotor_inertia: field.MomentOfInertia = required("motor and gearhead, at the shaft, in kg*m^2")
     gearhead_ratio: Positive = required("motor turns per turn of the gearhead, no unit")
     capstan_ratio: Positive = required("gearhead turns per turn of the joint, no unit")
-    speed_torque_gradient: field.TorqueGradient = required("at the shaft, rpm/(N*m) (thesis 4.10)")
+    speed_torque_gradient: field.TorqueGradient = required(
+        "command per torque at the shaft, rpm/(N*m) (thesis 4.10)"
+    )
     coulomb_friction: field.Command = required("dry friction as a command (thesis 4.1)")
     encoder_counts: Counts = required("counts of the encoder per turn of the gearhead's output")
 
@@ -175,8 +181,12 @@ class BalancedLegSpec(SpecModel, stronger="neither"):
     """Counter-masses and spring of one side leg (thesis 4.4)."""
 
     arm_center_of_mass: field.Length = required("G_c of the arm from the coupler's end, in m")
-    coupler_counter_arm: field.Length = required("B_b of the coupler's mass from the elbow, in m")
-    arm_counter_arm: field.Length = required("B_c of the arm's mass from the coupler's end, in m")
+    coupler_counter_arm: field.Length = required(
+        "B_b, counter-mass of the coupler, from the elbow, in m"
+    )
+    arm_counter_arm: field.Length = required(
+        "B_c, counter-mass of the arm, from the coupler's end, in m"
+    )
     spring_on_crank: field.Length = required("A0C_A, spring on the crank from the base joint")
     spring_on_base: field.Length = required("A0D0, spring on the base from the base joint, in m")
 

@@ -147,8 +147,12 @@ class DisturbancesSpec(SpecModel, stronger="larger"):
 
     command: field.AngularVelocity | None = optional("largest velocity command in rad/s")
     friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")
-    encoder_step: field.Angle | None = optional("resolution of the joint angle in rad")
-    force_step: field.Torque | None = optional("resolution of the measured torque in N*m")
+    encoder_step: field.Angle | None = optional(
+        "resolution of the joint angle in rad: an error of half a step"
+    )
+    force_step: field.Torque | None = optional(
+        "resolution of the measured torque in N*m: an error of half a step"
+    )
 
     largest_angle: field.Angle | None = optional(
         "largest joint angle and reference in rad, whose float32 rounding acts as a disturbance"

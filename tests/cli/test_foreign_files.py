@@ -8,7 +8,6 @@ import pytest
 from tests.gating.conftest import STABLE
 from tests.support import COMMUTING, ROOT, ends_soon, run
 
-HOLDER = ROOT / "specs/robots/neuroboscope.nrs.yaml"
 ACTUATOR = sorted((ROOT / "specs/data").glob("actuator-?hz.csv"))
 RUNS = ROOT / "docs/examples/scenarios.nrs.yaml"
 SAMPLED = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
@@ -27,7 +26,6 @@ QUICK = ("certify-switching", "schema")
 BEFORE = {
     "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
     "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
-    "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
     "x.htm": ("identify", "actuator", *ACTUATOR, "--report", "x.htm"),
     "x.html": ("report", SAMPLED, "--out", "x.html"),
     "soft-tissue-sampled.mat": ("export", SAMPLED, "--format", "mat", "--out", "."),

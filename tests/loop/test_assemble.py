@@ -200,7 +200,7 @@ def test_every_matrix_of_the_box_is_a_mean_of_corners(entries, ends, shares, var
         for label in corner.name.split("/")[1:]:
             name, _, end = label.partition("-")
             weight *= weights[name] if end == "max" else 1 - weights[name]
-        for i, row in enumerate(corner.A.fractions()):
+        for i, row in enumerate(corner.mode.A.fractions()):
             for j, entry in enumerate(row):
                 mean[i][j] += weight * entry
     assert mean == spec.modes[0].matrix(values)

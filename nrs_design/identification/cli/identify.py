@@ -272,7 +272,7 @@ def parse_preload(text: str | None, *, rotational: bool) -> tuple[float, float] 
     low, dots, high = (part.strip() for part in text.partition(".."))
     if not dots:
         high = low
-    kind = (LENGTH, ANGLE)[rotational]
+    kind = ANGLE if rotational else LENGTH
     return _parse("--preload", low, kind), _parse("--preload", high, kind)
 
 

@@ -98,7 +98,8 @@ class FindingView:
         synthetic = sum(source.synthetic for source in sources)
         kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
         # What must stand before anything that comes of synthetic data.
-        label = "SYNTHETIC DATA, made by a simulation and not measured. " * bool(synthetic)
+        warning = "SYNTHETIC DATA, made by a simulation and not measured. "
+        label = warning if synthetic else ""
         files = tuple(
             (source.path.name, "SYNTHETIC" if source.synthetic else "measured", source.sha256)
             for source in sources

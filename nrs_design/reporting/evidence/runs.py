@@ -150,7 +150,11 @@ def ruled_run(
     if rate:
         text, line = _SLOPE, "slope of the proved bound, "
     if quadratic:
-        text, line, label = _ACTIVE + _RISES * leaving, BOUND, "Root of V of the active mode [1]"
+        text, line, label = (
+            _ACTIVE + (_RISES if leaving else ""),
+            BOUND,
+            "Root of V of the active mode [1]",
+        )
     Qs = [functions.get(mode.name, np.eye(system.order)) for mode in played.modes]
     norms = [quadratic_norm(Q) for Q in Qs]
     directions = [worst_direction(alone(played, k), Q) for k, Q in enumerate(Qs)]

@@ -98,7 +98,8 @@ def _beside(result: Result) -> Iterator[str]:
     for item in result.certification.statements:
         if item.shows is Shows.REGION:
             yield item.claim(system)
-            yield from (all_corners(system, item, page_of(system, item).changing),) * ranged
+            if ranged:
+                yield all_corners(system, item, page_of(system, item).changing)
 
 
 def _not_covered_by_design(result: Result) -> tuple[str, ...]:

@@ -26,6 +26,7 @@ from nrs_design.spec.environment import ENVIRONMENT_LAWS
 from nrs_design.spec.load import axes_at
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 from tests.support import ROOT
+from tests.tables import rows
 
 SPECS = [
     axis
@@ -127,17 +128,12 @@ def test_an_assumption_has_its_words_in_the_catalogue():
 
 
 @pytest.mark.parametrize(
-    "unknown",
-    [
-        Assumption.create("uncoupled.legs", legs=("a", "b")),
-        Assumption.create("legs.two", legs=("a", "b")),
-        Assumption.create("load.sampled", legs=("a", "b")),
-        Assumption.create("load.sampled", inertia="1 kg", but="sometimes", legs=("a", "b")),
-        Assumption.create("at-a-switch.resets", switches=("a",), legs=("a", "b")),
-    ],
+    ("id", "given"), rows(__file__, "test_what_a_strangers_certificate_says_is_shown_as_it_is")
 )
-def test_what_a_strangers_certificate_says_is_shown_as_it_is(unknown):
+def test_what_a_strangers_certificate_says_is_shown_as_it_is(id, given):
     """Of this version, an id that the catalogue lacks is a defect."""
+    given = {key: tuple(said) if isinstance(said, list) else said for key, said in given.items()}
+    unknown = Assumption.create(id, **given)
     with pytest.raises((LookupError, ValueError)):
         sentence(unknown)
     said = sentence_with_bound(unknown)

@@ -22,6 +22,7 @@ from nrs_design.proof.switching import Reset, Switching
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic, mode_quadratic
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix
+from tests.tables import rows
 
 Q = ((1, 0), (0, 1))
 EXAMPLES = ROOT / "specs" / "examples"
@@ -32,38 +33,32 @@ IMPOSSIBLE = NoCommonQuadratic((("m0", ((1,), (0,))),))
 UNSTABLE = staying("m0")
 PERIOD = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(1))), 3)
 PER_MODE = mode_quadratic((("m0", Q), ("m1", Q)), 0, Fraction(1, 2))
-BLOCKS = ((0,), (1,))
-EXISTS, NONE, UNKNOWN = (
-    CommonQuadraticStatus.EXISTS,
-    CommonQuadraticStatus.IMPOSSIBLE,
-    CommonQuadraticStatus.UNKNOWN,
-)
+NAMED = {
+    "proof": PROOF,
+    "impossible": IMPOSSIBLE,
+    "unstable": UNSTABLE,
+    "period": PERIOD,
+    "per mode": PER_MODE,
+}
+
+
+def statement(said):
+    """Return a named statement, or one of a system of two blocks."""
+    if isinstance(said, str):
+        return NAMED[said]
+    return BlockTriangular(((0,), (1,)), tuple((block, NAMED[name]) for block, name in said))
 
 
 @pytest.mark.parametrize(
-    ("statements", "verdict", "status"),
-    [
-        ((), Verdict.INCONCLUSIVE, UNKNOWN),
-        ((PROOF,), Verdict.PROVED, EXISTS),
-        ((IMPOSSIBLE,), Verdict.INCONCLUSIVE, NONE),
-        ((UNSTABLE,), Verdict.REFUTED, NONE),
-        ((PERIOD,), Verdict.REFUTED, NONE),
-        ((PERIOD, IMPOSSIBLE), Verdict.REFUTED, NONE),
-        ((PER_MODE,), Verdict.PROVED, UNKNOWN),
-        ((PER_MODE, IMPOSSIBLE), Verdict.PROVED, NONE),
-        ((IMPOSSIBLE, PER_MODE), Verdict.PROVED, NONE),
-        ((BlockTriangular(BLOCKS, ((0, PROOF), (1, PROOF))),), Verdict.PROVED, EXISTS),
-        ((BlockTriangular(BLOCKS, ((0, PROOF), (1, PER_MODE))),), Verdict.PROVED, UNKNOWN),
-        ((BlockTriangular(BLOCKS, ((1, UNSTABLE),)),), Verdict.REFUTED, NONE),
-        ((BlockTriangular(BLOCKS, ((1, IMPOSSIBLE),)),), Verdict.INCONCLUSIVE, NONE),
-    ],
+    ("statements", "verdict", "status"), rows(__file__, "test_what_statements_say_together")
 )
 def test_what_statements_say_together(statements, verdict, status):
     system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
-    assert verdict_of(system, statements) is verdict
-    assert common_quadratic_of(system, statements) is status
+    statements = tuple(map(statement, statements))
+    assert verdict_of(system, statements) is Verdict(verdict)
+    assert common_quadratic_of(system, statements) is CommonQuadraticStatus(status)
     decisive = deciding(system, statements)
-    assert (decisive is None) == (verdict is Verdict.INCONCLUSIVE)
+    assert (decisive is None) == (verdict == "inconclusive")
     assert decisive is None or decisive in statements
 
 
@@ -72,8 +67,8 @@ def test_growth_through_resets_says_nothing_about_quadratic_functions():
     doubling = Reset("m0", "m1", matrix([[2, 0], [0, 2]]))
     system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
     system = replace(system, switching=Switching(resets=(doubling,)))
-    assert common_quadratic_of(system, (PERIOD,)) is UNKNOWN
-    assert common_quadratic_of(system, (UNSTABLE,)) is NONE
+    assert common_quadratic_of(system, (PERIOD,)) is CommonQuadraticStatus.UNKNOWN
+    assert common_quadratic_of(system, (UNSTABLE,)) is CommonQuadraticStatus.IMPOSSIBLE
 
 
 @pytest.mark.parametrize(

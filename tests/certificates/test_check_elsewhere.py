@@ -25,6 +25,7 @@ from tests.certificates.attacks import (
     shipped,
 )
 from tests.support import ROOT
+from tests.tables import rows
 
 SCRIPT = ROOT / "docs" / "certificates" / "check_elsewhere.py"
 
@@ -154,13 +155,7 @@ def test_discrete_time(judge, rate):
 
 
 @pytest.mark.parametrize(
-    ("time", "A", "rate", "code"),
-    [
-        ("discrete", [2, 1], "16/25", 0),
-        ("discrete", [2, 1], "63/100", 1),
-        ("continuous", [-4, -2], "1/21", 0),
-        ("continuous", [-4, -2], "1/20", 1),
-    ],
+    ("time", "A", "rate", "code"), rows(__file__, "test_a_constant_parameter_by_hand")
 )
 def test_a_constant_parameter_by_hand(judge, time, A, rate, code):
     """One state, P = 3 and 5, F = 1, G = 4: definite for rho^2 > 2/5, or alpha < 1/20."""

@@ -14,7 +14,6 @@ from nrs_design.certificates.prove import prove
 from nrs_design.certificates.verify import verify_document
 from tests.certificates.test_verify import (
     ALL,
-    SPECS,
     at,
     changed,
     is_true,
@@ -24,11 +23,6 @@ from tests.certificates.test_verify import (
     signed,
 )
 from tests.tables import rows
-
-
-@pytest.fixture(scope="module", params=SPECS)
-def pair(request):
-    return signed(request.param)
 
 
 def test_a_certificate_is_proved_without_its_spec(pair):
@@ -62,30 +56,7 @@ def test_malformed_systems(path, value, reason):
     assert reason in fault
 
 
-MAP = {"source": "a", "target": "b", "numerators": [[9, 0], [0, 9]], "denominator": 1}
-
-
-@pytest.mark.parametrize(
-    ("rules", "reason"),
-    [
-        ({}, "'switching' does not follow"),  # the same as arbitrary, which has a word of its own
-        ({"dwell_time": "-1"}, "not a ratio"),
-        ({"dwell_time": "2/2"}, "'switching' does not follow"),
-        ({"transitions": [["a", "z"]]}, "a transition does not lead"),
-        ({"transitions": [["a", "a"]]}, "a transition does not lead"),
-        ({"transitions": [["a"]]}, "malformed"),
-        ({"transitions": None}, "expected a list"),
-        ({"leave": "0"}, "unknown field"),
-        ({"resets": [{**MAP, "denominator": 0}]}, "no positive denominator"),
-        ({"resets": [MAP]}, "does not cover"),
-        ({"resets": [{**MAP, "target": "z"}]}, "a reset does not"),
-        ({"stays": [["z", {"shortest": "1"}]]}, "not those of modes"),
-        ({"stays": [["a", {"shortest": "2", "longest": "1"}]]}, "must be left before"),
-        ({"fixed_ends": [["a", "z"]]}, "not the ends of constant parameters"),
-        ({"fixed_ends": [["a", "b"], ["a", "b"]]}, "not the ends of constant parameters"),
-        ({"fixed_parameters": [{"name": "k", "low": "--1", "high": "1"}]}, "not a ratio"),
-    ],
-)
+@pytest.mark.parametrize(("rules", "reason"), rows(__file__, "test_rules_that_make_no_sense"))
 def test_rules_that_make_no_sense(rules, reason):
     document, _ = signed("given")
     assert [mode["name"] for mode in document["modes"]] == ["a", "b"]

@@ -20,6 +20,7 @@ from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import certify
 from tests.proof.graphs import common_quadratic, mode_quadratic
 from tests.proof.systems import PAIR, SYSTEMS, family, genuine, matrix
+from tests.tables import rows
 
 INTS = st.integers(-9, 9)
 STABLE = family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
@@ -123,22 +124,7 @@ def test_agreement_on_everything_that_holds(example):
     assert agrees(*genuine(example))
 
 
-@pytest.mark.parametrize(
-    ("coefficients", "positive"),
-    [
-        # Of products of (s - r), from the constant on: all roots are positive iff signs alternate.
-        ([-1, 1], True),
-        ([0, 1], False),
-        ([1, 1], False),
-        ([2, -3, 1], True),
-        ([0, -1, 1], False),
-        ([-1, 0, 1], False),
-        ([-2, -1, 1], False),
-        ([2, 3, 1], False),
-        ([-6, 11, -6, 1], True),
-        ([6, -5, -2, 1], False),
-    ],
-)
+@pytest.mark.parametrize(("coefficients", "positive"), rows(__file__, "test_signs_by_descartes"))
 def test_signs_by_descartes(coefficients, positive):
     class Known:
         def charpoly(self):
@@ -147,36 +133,15 @@ def test_signs_by_descartes(coefficients, positive):
     assert has_positive_spectrum(Known()) is positive
 
 
-I2 = ((1, 0), (0, 1))
-
-
 @pytest.mark.parametrize(
     ("matrices", "time", "Q", "rate", "holds"),
-    [
-        # Rates that are just proved, and just not.
-        ([[["-2/3"]]], CONTINUOUS, ((5,),), Fraction(2, 3) - TINY, True),
-        ([[["-2/3"]]], CONTINUOUS, ((5,),), Fraction(2, 3), False),
-        ([[["-2/3"]]], DISCRETE, ((5,),), Fraction(2, 3) + TINY, True),
-        ([[["-2/3"]]], DISCRETE, ((5,),), Fraction(2, 3), False),
-        # Every mode counts, and Q itself.
-        ([[[-1]], [[-2]]], CONTINUOUS, ((1,),), Fraction(3, 2), False),
-        ([[[-2]], [[-1]]], CONTINUOUS, ((1,),), Fraction(3, 2), False),
-        ([[[0, 0], [0, 0]]], DISCRETE, I2, HALF, True),
-        ([[[1]]], CONTINUOUS, ((-1,),), HALF, False),
-        ([[[2]]], DISCRETE, ((-1,),), HALF, False),
-        # By hand, with A = [[-1, c], [0, -1]] and Q = I: at rate r iff c < 2 (1 - r).
-        ([[[-1, "0.99"], [0, -1]]], CONTINUOUS, I2, HALF, True),
-        ([[[-1, "1"], [0, -1]]], CONTINUOUS, I2, HALF, False),
-        # With A = [[0, c], [0, 0]]: iff c < rho. Q = diag(1, 4) allows twice as much one way.
-        ([[[0, "0.99"], [0, 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, True),
-        ([[[0, "1"], [0, 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, False),
-        ([[[0, 0], ["0.24", 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, True),
-        ([[[0, 0], ["0.25", 0]]], DISCRETE, ((1, 0), (0, 4)), HALF, False),
-    ],
+    rows(__file__, "test_opinion_on_a_quadratic_function"),
 )
 def test_opinion_on_a_quadratic_function(matrices, time, Q, rate, holds):
-    evidence = common_quadratic(Q, 0, rate)
-    system = family(*matrices, time=time)
+    number, moved = rate
+    Q = tuple(map(tuple, Q))
+    evidence = common_quadratic(Q, 0, Fraction(number) + moved * TINY)
+    system = family(*matrices, time=Time(time))
     assert agrees(system, evidence) is holds
     assert (evidence.find_fault(system) is None) is holds
 
@@ -194,19 +159,10 @@ def test_opinion_on_a_function_with_rounding(rate, holds):
 
 
 @pytest.mark.parametrize(
-    ("A", "time", "is_vetoed"),
-    [
-        ([[-1, 0], [0, -1]], CONTINUOUS, True),
-        ([[-1, 0], [0, 0]], CONTINUOUS, False),
-        ([[0, 1], [-1, 0]], CONTINUOUS, False),
-        ([[1, 0], [0, -3]], CONTINUOUS, False),
-        ([[0, 0], [0, "1/2"]], DISCRETE, True),
-        ([[0, 1], [-1, 0]], DISCRETE, False),
-        ([["-2", 0], [0, 0]], DISCRETE, False),
-    ],
+    ("A", "time", "is_vetoed"), rows(__file__, "test_veto_on_what_is_surely_stable")
 )
 def test_veto_on_what_is_surely_stable(A, time, is_vetoed):
-    calm = [["-1/4", 0], [0, "-1/4"]]
+    calm, time = [["-1/4", 0], [0, "-1/4"]], Time(time)
     system = family(calm, A, time=time)
     assert agrees(system, staying("m1")) is not is_vetoed
     assert not agrees(system, staying("m0"))

@@ -24,7 +24,6 @@ from contextlib import suppress
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -56,21 +55,9 @@ SPECS = {
     "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
     "saturating": ROOT / "docs" / "examples" / "saturating.nrs.yaml",
-    "blocks": {
-        "A": [
-            [["-1", "0", "0"], ["0", "-1", "-1"], ["0", "1", "-1"]],
-            [["-1", "0", "0"], ["0", "-1", "-6"], ["0", "1/6", "-1"]],
-        ]
-    },
-    "average": {"A": [[["-1", "10"], ["0", "-1"]], [["-1", "0"], ["10", "-1"]]]},
-    "resets": {
-        "A": [[["0", "1"], ["-10", "-1"]], [["0", "1"], ["-0.1", "-0.5"]]],
-        "switching": {"transitions": [["m0", "m1"], ["m1", "m0"]]},
-        "resets": [
-            {"from": a, "to": b, "map": [["1/9", "0"], ["0", "1/9"]]}
-            for a, b in (("m0", "m1"), ("m1", "m0"))
-        ],
-    },
+    "blocks": ROOT / "tests" / "specs" / "certified-blocks.yaml",
+    "average": ROOT / "tests" / "specs" / "certified-average.yaml",
+    "resets": ROOT / "tests" / "specs" / "certified-resets.yaml",
 }
 METHODS = {"average": Method.MIXTURE}
 # Every change to the others, which are larger, is left to the slow tests.
@@ -91,25 +78,9 @@ DROP = object()
 NOT_ITS_MODES = "is not that of the spec"
 
 
-@pytest.fixture(scope="module", params=SPECS)
-def pair(request):
-    return signed(request.param)
-
-
 @cache
 def signed(name: str) -> tuple[dict, LoadedSpec]:
-    path = SPECS[name]
-    if isinstance(path, dict):
-        rules = {key: value for key, value in path.items() if key != "A"}
-        modes = [{"name": f"m{i}", "A": A} for i, A in enumerate(path["A"])]
-        spec = {"kind": "switched-system", "name": "given", "time": "continuous"}
-        spec |= {"switching": "arbitrary", "modes": modes, **rules}
-        with TemporaryDirectory() as folder:
-            path = Path(folder, "given.nrs.yaml")
-            path.write_text(json.dumps(spec))
-            loaded = read_spec(path)
-    else:
-        loaded = read_spec(path)
+    loaded = read_spec(SPECS[name])
     method = METHODS.get(name, Method.AUTO)
     found = run_certification(loaded, method=method, limits=ANY_RATE)
     return json.loads(dump(found.certificate)), loaded
@@ -465,13 +436,7 @@ class TestForgery:
             self.reject({**document, "verdict": verdict, "statements": []}, spec, "states nothing")
 
     @pytest.mark.parametrize(
-        ("controller", "gain", "value"),
-        [
-            ("insertion", "Bt", "-2.150000095367431640625"),
-            ("insertion", "Bt", "0.015625"),  # below its lower bound
-            ("insertion", "Bt", "2.15"),  # not a single-precision number
-            ("motion", "Kd", "2061"),  # the spec fixes it
-        ],
+        ("controller", "gain", "value"), rows(__file__, "test_gains_outside_the_spec")
     )
     def test_gains_outside_the_spec(self, controller, gain, value):
         document, spec = signed("impedance")
@@ -521,30 +486,15 @@ class TestFiles:
     @pytest.mark.parametrize(
         ("content", "reason"),
         [
-            (b"", "not a certificate"),
-            (b"{", "not a certificate"),
-            (b"[]", "expected a JSON object"),
-            (b'"text"', "expected a JSON object"),
-            (b'{"rate": 0.5}', "floating-point"),
-            (b'{"rate": NaN}', "floating-point"),
-            (b'{"rate": -Infinity}', "floating-point"),
-            (b'{"rate": 0.' + b"1" * 10_000 + b"}", "floating-point"),
-            (b'{"a": 1, "a": 1}', "a key occurs twice"),
-            (b'{"a": {"b": 1, "b": 2}}', "a key occurs twice"),
-            (b'{"Q": ' + b"7" * 4301 + b"}", "4300"),
-            (b'{"a": ' + b"[" * 5000 + b"]" * 5000 + b"}", "recursion"),
-            (b"\xff\xfe{}", "not a certificate"),
-            (b"<!doctype html>\n<p>{}", "not a certificate: this is a page"),
-            (b"\xef\xbb\xbf{}", "not a certificate"),
-            (b"{} {}", "not a certificate"),
-            (b'{"a": 1,}', "not a certificate"),
-            (b'{"a": "\n"}', "not a certificate"),
-            (b"kind: switched-system\n", "not a certificate"),
+            *rows(__file__, "test_not_a_certificate"),
+            ('{"rate": 0.' + "1" * 10_000 + "}", "floating-point"),
+            ('{"Q": ' + "7" * 4301 + "}", "4300"),
+            ('{"a": ' + "[" * 5000 + "]" * 5000 + "}", "recursion"),
         ],
     )
     def test_not_a_certificate(self, tmp_path, content, reason):
         path = tmp_path / "c.json"
-        path.write_bytes(content)
+        path.write_bytes(content.encode("latin-1"))
         with pytest.raises(CertificateError, match=reason) as caught:
             verify(path, signed("given")[1])
         assert caught.value.path == path

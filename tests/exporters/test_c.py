@@ -19,6 +19,7 @@ from tests.exporters.programs import (
     write_law,
 )
 from tests.support import thinned
+from tests.tables import rows
 
 COUNT = 10_000
 SAME = f"soft-tissue: all {COUNT} cases are the same\n"
@@ -133,14 +134,7 @@ def slips_of(source):
 
 
 @pytest.mark.parametrize(
-    ("flags", "said"),
-    [
-        (("-ffast-math",), "-ffast-math"),
-        (("-ffinite-math-only",), "-ffinite-math-only"),
-        (("-funsafe-math-optimizations",), "parts of it"),
-        (("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"), "parts of it"),
-        (("-freciprocal-math",), "parts of it"),
-    ],
+    ("flags", "said"), rows(__file__, "test_fast_arithmetic_is_refused_by_the_compiler")
 )
 def test_fast_arithmetic_is_refused_by_the_compiler(tmp_path, sampled_export, flags, said):
     """Where guards would be left out, and where sums would be reordered."""
@@ -166,15 +160,7 @@ def written(folder, export, wrong=None):
     return folder / "main.c", *write_law(folder, export.record, LAWS["limits"], cases)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "first"),
-    [
-        ([], -1),
-        ([(0, "command")], 0),
-        ([(41, "after.velocity"), (17, "valid"), (59, "command")], 17),
-        ([(59, "after.reference")], 59),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "first"), rows(__file__, "test_the_first_case_that_differs"))
 def test_the_first_case_that_differs(tmp_path, sampled_export, wrong, first):
     *sources, _ = written(tmp_path, sampled_export, wrong)
     built(compiler(), *STRICT, "-O1", *sources, "-o", tmp_path / "program")

@@ -25,6 +25,7 @@ from tests.exporters.programs import (
     write_law,
 )
 from tests.support import ROOT
+from tests.tables import rows
 
 PERIOD = Fraction(1, 500)
 
@@ -61,14 +62,7 @@ def test_cppcheck_with_misra_is_content(tmp_path, shipped):
     check_with_misra(write_law(tmp_path, record, law, draw_cases(law, 1))[0])
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("", ""), ("logic->held >=", "logic->held >"), (" >= NRS", " > NRS"),
-        ("logic->held++", "logic->held += 2U"), ("? logic->mode", "? 0U"),
-        ("logic->mode = after", "logic->mode = before"), ("return after", "return before"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("old", "new"), rows(__file__, "test_the_self_test_runs_the_logic_too"))
 def test_the_self_test_runs_the_logic_too(tmp_path, shipped, old, new):
     """After the law, which is right: every slip in the logic is one of its own cases."""
     record, law, names = shipped

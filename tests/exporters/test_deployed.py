@@ -13,6 +13,7 @@ from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.exporters.programs import write_formats
 from tests.support import ROBOT, ROOT
+from tests.tables import rows
 
 EXECUTABLE = [name for name in format_names() if format_of(name).executable]
 UP = "NRS_SOFT_TISSUE"
@@ -74,24 +75,9 @@ def test_a_file_as_exported(compared, folder, ending):
     assert found.left_out == "how it is compiled"
 
 
-# What is changed, in which file, from what to what: every byte counts alike.
-CHANGES = [
-    ("a number by its last bit", ".h", r"0x1\.f6eep\+19F", "0x1.f6ee02p+19F"),
-    ("a comment", ".h", r"outside the proof", "inside the proof"),
-    ("a guard", ".c", r" &&\n\s+is_within\(in->torque, \w+\)", ""),
-    ("what comes after its end", ".c", r"\Z", "int more;\n"),
-    ("how many cases", "_test.h", "_TEST_CASES 1000", "_TEST_CASES 10"),
-    ("a bit of a case", "_test.c", r"(\{0x0U, 0x\w+)U", r"\g<1>1U"),
-    ("a check of the monitor", "_monitor.c", "m->left == ", "m->left != "),
-    ("a flag", ".cmake", "-ffp-contract=off", "-ffast-math"),
-    ("ends of lines", ".c", "\n", "\r\n"),
-    ("no text at all", ".c", r"(?s).*", ""),
-    ("its last end of line is gone", ".c", r"\n\Z", ""),
-    ("an end of line more", ".c", r"\n\Z", "\n\n"),
-]
-
-
-@pytest.mark.parametrize(("ending", "old", "new"), [change[1:] for change in CHANGES])
+@pytest.mark.parametrize(
+    ("ending", "old", "new"), rows(__file__, "test_each_single_change_is_found")
+)
 def test_each_single_change_is_found(folder, compared, ending, old, new):
     file = folder / f"soft-tissue{ending}"
     text = file.read_text()

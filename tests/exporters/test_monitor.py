@@ -26,6 +26,7 @@ from tests.exporters.programs import (
     write_formats,
 )
 from tests.identification import runs
+from tests.tables import rows
 
 LAW = LAWS["inertia"]
 # Of the checks of `audit`, what the monitor calls them.
@@ -105,25 +106,7 @@ def test_it_reports_first_what_audit_finds(tmp_path, monitor, rules, data):
 def test_one_sample_at_a_time(monitor):
     """What no log of `audit` has: the age of the force, steps of time, what is no number."""
     watching = monitor(spec_with())
-    nan, inf = float("nan"), float("inf")
-    for given, kind in (
-        ({}, "NONE"),
-        ({"age": 1}, "NONE"),
-        ({"age": 2}, "DELAY"),
-        ({"step": 0.00209}, "NONE"),
-        ({"step": 0.00211}, "JITTER"),
-        ({"step": nan}, "JITTER"),
-        ({"step": 0.0}, "JITTER"),
-        ({"mode": 2}, "INPUT"),
-        ({"angle": nan}, "INPUT"),
-        ({"angle": -inf}, "INPUT"),
-        ({"torque": nan}, "FORCE"),
-        ({"torque": 0.29999998}, "NONE"),
-        ({"torque": -0.30000001}, "FORCE"),
-        ({"command": nan}, "SATURATION"),
-        ({"command": -3000.0}, "SATURATION"),
-        ({"command": 2999.9}, "NONE"),
-    ):
+    for given, kind in rows(__file__, "test_one_sample_at_a_time"):
         watching.begin()
         assert watching.step(**given) == kind
         assert watching.step() == kind

@@ -15,6 +15,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.record import ExportRecord, Gain, dump_record, record_schema_text
 from nrs_design.spec import read_spec
+from tests.tables import rows
 
 SPECS = Path(__file__).parents[2] / "specs"
 
@@ -29,15 +30,7 @@ def test_three_forms_of_a_gain_are_the_same_number(value):
     assert Fraction(exact) == Fraction(value)
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"exact": "0.5000001"}, {"float32": 0.25}, {"float32": float("inf")},
-        {"float32": float("nan")}, {"float32_bits": "0x3f000001"}, {"float32_bits": "0x7fc00000"},
-        {"float32_bits": "3f000000"}, {"exact": 0.5}, {"extra": 1},
-    ],
-    ids=str,
-)  # fmt: skip
+@pytest.mark.parametrize("change", rows(__file__, "test_forms_that_differ_are_refused"))
 def test_forms_that_differ_are_refused(change):
     good = {"name": "k", "unit": "1", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
     assert Gain(**good).exact == "0.5"
@@ -65,14 +58,8 @@ def test_every_record_keeps_the_published_schema(record, sampled_export, continu
 
 
 @pytest.mark.parametrize(
-    "change",
-    [
-        {"extra": 1}, {"schema": "nrs-design/export/2"}, {"controllers": []},
-        {"verdict": "refuted"}, {"proof": {"verdict": "inconclusive"}}, {"sample_time": 0.002},
-        {"delay": [0, 1, 2]}, {"spec": {"name": "x", "sha256": "0"}},
-    ],
-    ids=str,
-)  # fmt: skip
+    "change", rows(__file__, "test_the_schema_refuses_what_the_record_refuses")
+)
 def test_the_schema_refuses_what_the_record_refuses(record, change):
     document = {**json.loads(dump_record(record)), **change}
     assert not Draft202012Validator(json.loads(record_schema_text())).is_valid(document)

@@ -19,6 +19,7 @@ from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import quick, record, sinusoids, slow
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE, replaced
+from tests.tables import rows
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
@@ -129,14 +130,7 @@ def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
     assert "# Thesis 6.3.2.1 asks for a nonzero inertia" in back
 
 
-@pytest.mark.parametrize(
-    "stiffness",
-    [
-        "stiffness: 700 N/m   # from a catalogue",
-        "stiffness:   # from a catalogue\n      nominal: 700 N/m\n      range: [600 N/m, 800 N/m]",
-        "stiffness:\n      nominal: 700 N/m   # from a catalogue",
-    ],
-)
+@pytest.mark.parametrize("stiffness", rows(__file__, "test_comments_within_the_value_stay"))
 def test_comments_within_the_value_stay(tmp_path, silicone, stiffness):
     text = SOFT_TISSUE.read_text().replace(
         "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", stiffness

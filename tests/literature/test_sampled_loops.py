@@ -56,13 +56,7 @@ def test_the_border_of_constant_periods():
 
 
 @pytest.mark.parametrize(
-    ("shortest", "longest", "verdict"),
-    [
-        ("0.1", "1.729", "proved"),
-        ("1", "1.7294", "proved"),
-        ("1", "1.7295", "refuted"),
-        ("0.1", "3", "refuted"),
-    ],
+    ("shortest", "longest", "verdict"), rows(__file__, "test_periods_that_vary")
 )
 def test_periods_that_vary(shortest, longest, verdict):
     """Up to the border of constant periods, which no proof can pass: 1.72941."""

@@ -43,13 +43,7 @@ def test_what_keeps_the_controller_from_starting(tmp_path, old, new, message):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line"),
-    [
-        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {x: 5.0, y: 5.0}", 30),
-        ("mass: [5.0, 5.0, 5.0, 0.1, 0.1, 0.1]", "mass: {}", 30),
-        # A default was taken in its place.
-        ("filter_coefficient: 0.5", "filter_coefficient: {value: 0.5}", 22),
-    ],
+    ("old", "new", "line"), rows(__file__, "test_a_map_in_the_place_of_a_value_is_told_at_its_key")
 )
 def test_a_map_in_the_place_of_a_value_is_told_at_its_key(tmp_path, old, new, line):
     wanted = "one value" if "filter" in old else "a list of 6 values"

@@ -4,11 +4,10 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.ros2.parameters import read_bool, read_double, read_integer, read_nodes
+from tests.tables import rows
 
-INTEGERS = ["5", "-5", "+3"]
 
-
-@pytest.mark.parametrize("text", INTEGERS)
+@pytest.mark.parametrize("text", ["5", "-5", "+3"])
 def test_an_integer_is_no_double(text):
     """rcl_yaml_param_parser tells types by the text; a node that declares a double refuses it."""
     with pytest.raises(SpecError, match="integer for ROS 2") as caught:
@@ -16,26 +15,9 @@ def test_an_integer_is_no_double(text):
     assert caught.value.remedy == f"write {text}.0"
 
 
-@pytest.mark.parametrize(
-    ("read", "right", "wrong", "said"),
-    [
-        (
-            read_double,
-            {"5.0": 5, ".5": 0.5, "5.": 5, "1e3": 1000, "2.5e-1": 0.25},
-            ("1/2", "nan", ".inf", "five", "0x10", "010.0", ""),
-            None,
-        ),
-        (
-            read_bool,
-            dict.fromkeys(("true", "Yes", "ON", "y"), True)
-            | dict.fromkeys(("false", "No", "OFF", "n"), False),
-            ("tRUE", "1", "0", ""),
-            "truth value",
-        ),
-        (read_integer, {"500": 500}, ("500.0", "5e2", "x"), "no integer"),
-    ],
-)
-def test_one_value(read, right, wrong, said):
+@pytest.mark.parametrize(("kind", "right", "wrong", "said"), rows(__file__, "test_one_value"))
+def test_one_value(kind, right, wrong, said):
+    read = {"double": read_double, "bool": read_bool, "integer": read_integer}[kind]
     assert {text: read(text) for text in right} == right
     for text in wrong:
         with pytest.raises(SpecError, match=said):

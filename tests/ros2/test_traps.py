@@ -8,8 +8,7 @@ from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import read_nodes
 from nrs_design.ros2.traps import find_traps
 from tests.ros2.support import EXAMPLE, changed
-
-STIFF = "stiffness: [200.0, 200.0, 200.0, 10.0"
+from tests.tables import rows
 
 
 def traps(file):
@@ -21,19 +20,7 @@ def test_the_example_has_none():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message", "line"),
-    [
-        (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0", "takes away the damping of axis x", 32),
-        (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0", "which acts like 25 N*s/m", 32),
-        ("mass: [5.0, ", "mass: [6.0, ", "masses differ", 30),
-        ("damping_ratio: [2.8,", "damping_ratio: [-2.8,", "negative for axis x", 31),
-        ("update_without_reactivation: false", "update_without_reactivation: true", "is on:", 34),
-        ("filter_coefficient: 0.5", "filter_coefficient: 0.0", "no share of the new sample", 22),
-        ("filter_coefficient: 0.5", "filter_coefficient: 0.005", "over 200 periods", 22),
-        ("filter_coefficient: 0.5", "filter_coefficent: 0.5", "did you mean ft_sensor.filter", 22),
-        ("tip: tool0", "tip: tool0\n      group_name: arm", "passes over", 18),
-        ("      base: base_link\n", "", "does not start without kinematics.base, unless", 8),
-    ],
+    ("old", "new", "message", "line"), rows(__file__, "test_each_at_its_place")
 )
 def test_each_at_its_place(tmp_path, old, new, message, line):
     found = [trap for trap in traps(changed(tmp_path, (old, new))) if message in trap.message]

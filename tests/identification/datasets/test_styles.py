@@ -6,6 +6,7 @@ import pytest
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.identification.tables.columns import Name, find_columns, parse_mapping, read_name
+from tests.tables import rows
 
 N = 80
 TIME = np.arange(N) / 100
@@ -13,7 +14,7 @@ DEFLECTION = 0.005 * (1 - np.cos(9 * TIME))
 FORCE = 750 * DEFLECTION
 
 
-def rows(separator, scales=(1.0, 1.0, 1.0)):
+def table(separator, scales=(1.0, 1.0, 1.0)):
     lines = (
         separator.join(f"{value * scale:.6f}" for value, scale in zip(row, scales, strict=True))
         for row in zip(TIME, DEFLECTION, FORCE, strict=True)
@@ -26,17 +27,20 @@ ROS = "%time,/tool.pose.z,/ft_sensor.wrench.force.z\n" + "".join(
     for t, d, f in zip(TIME, DEFLECTION, FORCE, strict=True)
 )
 FROM_ROS = ["time_ns=time", "deflection_m=/tool.pose.z", "force_N=/ft_sensor.wrench.force.z"]
-GERMAN = "Zeit;Weg (mm);Kraft\n" + rows(";", (1, 1e3, 1))
+GERMAN = "Zeit;Weg (mm);Kraft\n" + table(";", (1, 1e3, 1))
 FROM_GERMAN = ["time_s=Zeit", "deflection_mm=Weg (mm)", "force_N=Kraft"]
 QUOTED = '"Time (s)","Deflection (mm)","Force (N)"\n"' + (
-    rows('","', (1, 1e3, 1)).strip().replace("\n", '"\n"') + '"\n'
+    table('","', (1, 1e3, 1)).strip().replace("\n", '"\n"') + '"\n'
 )
-MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + rows(",", (1, 1e6, 1 / 9.80665))
+MARKED = "\ufefftime_s,deflection_um,force_kgf\n" + table(",", (1, 1e6, 1 / 9.80665))
 STYLES = {
     "all in quotes": (QUOTED, []),
-    "commented header of NumPy": ("# time_s deflection_m force_N\n" + rows(" "), []),
-    "tabs": ("time_s\tdeflection_m\tforce_N\n" + rows("\t"), []),
-    "brackets": ("# a\nTime [ms], Deflection [µm], Force [kN]\n" + rows(",", (1e3, 1e6, 1e-3)), []),
+    "commented header of NumPy": ("# time_s deflection_m force_N\n" + table(" "), []),
+    "tabs": ("time_s\tdeflection_m\tforce_N\n" + table("\t"), []),
+    "brackets": (
+        "# a\nTime [ms], Deflection [µm], Force [kN]\n" + table(",", (1e3, 1e6, 1e-3)),
+        [],
+    ),
     "semicolons and foreign names": (GERMAN, FROM_GERMAN),
     "a bag": (ROS, FROM_ROS),
     "a byte order mark": (MARKED, []),
@@ -59,33 +63,19 @@ def test_text(tmp_path, style):
 
 def test_micro_sign_of_windows(tmp_path):
     path = tmp_path / "record.csv"
-    text = "Time [s];Deflection [µm];Force [N]\n" + rows(";", (1, 1e6, 1))
+    text = "Time [s];Deflection [µm];Force [N]\n" + table(";", (1, 1e6, 1))
     path.write_bytes(text.encode("cp1252"))
     check(read_tissue(path))
 
 
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        ("velocity_rad_s", ("velocity", "rad_s")),
-        ("angle_rad_2", ("angle", "rad_2")),
-        ("Velocity (rpm)", ("velocity", "rpm")),
-        ("Torque [N·m]", ("torque", "Nm")),
-        ("Angle [°]", ("angle", "deg")),
-        ("Deflection [μm]", ("deflection", "um")),
-        ("command_pwm", ("command", "counts")),
-        ("Force", ("force", "")),
-        ("TIME_MS", ("time", "MS")),
-        *((text, None) for text in ("Load cell serial", "t [N]", "F [N]", "Load", "Fz")),
-    ],
-)
+@pytest.mark.parametrize(("text", "name"), rows(__file__, "test_names"))
 def test_names(text, name):
     assert read_name(text) == (name and Name(*name))
 
 
 def test_of_two_columns_of_a_quantity_the_user_chooses(tmp_path):
     path = tmp_path / "record.csv"
-    body = rows(",", (1, 1e3, 1)).replace("\n", ",1\n")
+    body = table(",", (1, 1e3, 1)).replace("\n", ",1\n")
     path.write_text(f"time_s,deflection_mm,force_N,Deflection [mm]\n{body}")
     with pytest.raises(DataError, match="there twice") as caught:
         read_tissue(path)
@@ -93,16 +83,7 @@ def test_of_two_columns_of_a_quantity_the_user_chooses(tmp_path):
     check(read_tissue(path, parse_mapping(["deflection_mm=deflection_mm"])))
 
 
-@pytest.mark.parametrize(
-    ("name", "factor", "unit"),
-    [
-        ("force_kgf", 9.80665, "N"), ("force_gf", 9.80665e-3, "N"),
-        ("force_lbf", 4.4482216152605, "N"), ("deflection_in", 0.0254, "m"),
-        ("velocity_rpm", 2 * np.pi / 60, "rad_s"), ("command_rpm", 1.0, "rpm"),
-        ("command_deg_s", 60 / 360, "rpm"), ("command_rad_s", 60 / (2 * np.pi), "rpm"),
-        ("command_mV", 1e-3, "V"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("name", "factor", "unit"), rows(__file__, "test_factors"))
 def test_factors(name, factor, unit):
     """1 kgf = 9.80665 N by definition; 1 rpm = 2 pi/60 rad/s, but a command in rpm is a number."""
     found = read_name(name)
@@ -117,18 +98,9 @@ def test_what_is_mapped_decides_between_layouts(tmp_path):
     assert find_columns(names, layouts, {}, tmp_path, 1)[0] == layouts[0]
 
 
-CONTRADICTIONS = {
-    "force_N=Load_kN": "force_kN=Load_kN",
-    "deflection_m=Weg [mm]": "deflection_mm=Weg [mm]",
-    "command_rpm=voltage_V": "command_V=voltage_V",
-    "velocity_rad_s=w_deg_s": "velocity_deg_s=w_deg_s",
-    "angle_rad=Weg [mm]": "map another column",
-    "force_N=Fn (µN)": "force_uN=Fn (µN)",
-    "force_N=Weight (g)": "map another column",
-}
-
-
-@pytest.mark.parametrize(("entry", "remedy"), CONTRADICTIONS.items(), ids=CONTRADICTIONS)
+@pytest.mark.parametrize(
+    ("entry", "remedy"), rows(__file__, "test_a_mapped_column_keeps_the_unit_that_it_says")
+)
 def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
     theirs = entry.partition("=")[2]
     with pytest.raises(DataError, match="says") as caught:
@@ -136,11 +108,7 @@ def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
     assert remedy in str(caught.value.remedy)
 
 
-@pytest.mark.parametrize(
-    "entry",
-    ["force_N=F [N]", "torque_Nm=T (N*m)", "angle_rad=theta_m", "command_V=sensor_A",
-     "input_any=cmd_V", "force_N=Force (filtered)"],
-)  # fmt: skip
+@pytest.mark.parametrize("entry", rows(__file__, "test_a_name_that_does_not_contradict_is_mapped"))
 def test_a_name_that_does_not_contradict_is_mapped(entry):
     ours, _, theirs = entry.partition("=")
     quantity = read_name(ours).quantity

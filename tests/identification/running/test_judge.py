@@ -12,6 +12,7 @@ from nrs_design.spec import parse_spec, read_spec
 from tests.identification import runs
 from tests.identification.runs import SAMPLED, SOFT, check, judged, log
 from tests.support import COMMUTING, ROBOT, ROOT
+from tests.tables import rows
 
 LIMITED = replace(SOFT, saturates=3000.0)
 
@@ -48,33 +49,13 @@ def test_the_first_violation_has_its_time(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("bounds", "options", "status", "said"),
-    [
-        (SOFT, {"proved": True}, "not judged", ("kept all the time", "assumption of the proof")),
-        (
-            SOFT,
-            {"proved": True, "losable": True},
-            "inside",
-            ("lost and made again at any time", "covered by the proof"),
-        ),
-        (
-            SAMPLED,
-            {"proved": False},
-            "inside",
-            ("lost and made again at any time", "asked for by the spec, not proved"),
-        ),
-        (
-            SOFT,
-            {"proved": False},
-            "not judged",
-            ("not said", "`contact` of the spec, or a certificate, says whether it may be lost"),
-        ),
-    ],
+    ("sampled", "options", "status", "said"), rows(__file__, "test_lost_contact")
 )
-def test_lost_contact(tmp_path, bounds, options, status, said):
+def test_lost_contact(tmp_path, sampled, options, status, said):
+    bounds = SAMPLED if sampled else SOFT
     found = judge_run(log(tmp_path, runs.run(free=2.0)), bounds, **options)
     contact = check(found, "contact")
-    assert (contact.status, (contact.allowed, contact.basis)) == (status, said)
+    assert (contact.status, [contact.allowed, contact.basis]) == (status, said)
     assert found.verdict == "inconclusive"
 
 

@@ -4,6 +4,7 @@ from hypothesis import given
 
 from nrs_design.errors import PoseError
 from nrs_design.robot.models.geometry import is_reachable, posture, reach, reach_margin
+from tests.tables import rows
 
 from .strategies import poses
 
@@ -38,15 +39,7 @@ def test_the_worst_pose_of_a_batch_is_named(robot):
     assert caught.value.pose == pytest.approx((0, 0, 0.9))
 
 
-@pytest.mark.parametrize(
-    ("pose", "said"),
-    [
-        ((np.nan, 0, 0.2), "not finite"),
-        ((0, 0, np.inf), "not finite"),
-        ((1.0, 1.0, 0.2), "no direction"),
-        ((np.pi / 2, 0, 0.2), "no direction"),
-    ],
-)
+@pytest.mark.parametrize(("pose", "said"), rows(__file__, "test_what_is_no_pose"))
 def test_what_is_no_pose(robot, pose, said):
     with pytest.raises(PoseError, match=said):
         posture(robot, pose)

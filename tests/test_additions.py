@@ -14,20 +14,13 @@ import pytest
 from tests.exporters.programs import STRICT, compiler
 from tests.package import PACKAGE
 from tests.simulation.interactions import text_of
+from tests.tables import spec_text
 
 ADDITIONS = Path(__file__).parent / "additions"
 LAG = "{type: lag-force, environment: soft, gain: 0.01 rad/(N*m), lag: 50 ms}"
 RUBBER = "{model: rubber, stiffness: 40 N*m/rad, damping: 1 N*m*s/rad}"
 SAMPLED = "sampling: {period: 2 ms, delay: [0, 1]}\ncontact: kept\n"
-TWO_MODES = """\
-kind: switched-system
-name: two
-time: discrete
-modes:
-  - {name: a, A: [["0.5", "0.2"], ["0", "0.4"]]}
-  - {name: b, A: [["0.4", "0"], ["0.3", "0.5"]]}
-switching: arbitrary
-"""
+TWO_MODES = spec_text("two-steps")
 MAIN = """#include "sampled_test.h"
 int main(void) { return (int)nrs_sampled_self_test() + 1; }
 """

@@ -1,5 +1,3 @@
-"""`nrs-design certify-switching`, as a user types it."""
-
 import json
 import os
 import subprocess

@@ -1,5 +1,3 @@
-"""`nrs-design simulate`, as a user types it."""
-
 import pytest
 
 from nrs_design.reporting.figures.simulated import draw_simulated

@@ -1,5 +1,3 @@
-"""`nrs-design sweep`, as a user types it."""
-
 import pytest
 
 from nrs_design.cli.sweep import SWEPT

@@ -1,5 +1,3 @@
-"""`nrs-design verify`, as a user types it."""
-
 import json
 import shutil
 import subprocess

@@ -5,21 +5,9 @@ from making.notebook import made, notebook_of, page_of, read_cells, run_cells
 
 from tests.docs.pages import DOCS
 from tests.support import ROOT
+from tests.tables import entry
 
-SOURCE = '''"""A file."""
-# %% [markdown]
-# # Title
-#
-# Words.
-
-# %%
-import math
-x = 2
-
-# %%
-print("x is", x)
-math.sqrt(x + 2)
-'''
+SOURCE = entry(__file__, "SOURCE")
 
 
 def test_cells_share_their_names_and_show_what_they_print_and_end_with():
@@ -41,13 +29,7 @@ def test_cells_share_their_names_and_show_what_they_print_and_end_with():
     assert written[2]["outputs"][0]["text"] == ["x is 2\n", "2.0\n"]
 
 
-DRAWING = """# %%
-class Drawn:
-    def savefig(self, buffer, **settings):
-        buffer.write(b"png")
-
-Drawn()
-"""
+DRAWING = entry(__file__, "DRAWING")
 
 
 def test_a_figure_becomes_an_image():

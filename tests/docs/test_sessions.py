@@ -1,7 +1,5 @@
 """Every session that a page shows runs, and prints what is shown; every option shown exists."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

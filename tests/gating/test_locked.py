@@ -135,10 +135,7 @@ def test_goals_of_the_spec_and_limits_of_runs_are_asked(tmp_path):
     controllers = [
         f"{rule} {name}"
         for name in ("insertion", "withdrawal")
-        for rule, name in (
-            ("NRS103", name),
-            ("NRS106", f"{name}: max_sensitivity_peak"),
-        )
+        for rule, name in (("NRS103", name), ("NRS106", f"{name}: max_sensitivity_peak"))
     ]
     limits = ["NRS109 hit: torque", "NRS109 hit: velocity"]
     assert asked(tmp_path, text) == [*controllers, *limits]

@@ -42,10 +42,7 @@ def test_one_module_starts_processes():
 
 @pytest.mark.parametrize(
     "command",
-    [
-        COMMANDS[0],
-        *(pytest.param(c, marks=pytest.mark.slow) for c in COMMANDS[1:]),
-    ],
+    [COMMANDS[0], *(pytest.param(c, marks=pytest.mark.slow) for c in COMMANDS[1:])],
     ids=lambda command: command[0],
 )
 def test_nothing_that_was_planted_is_executed(tmp_path, command):

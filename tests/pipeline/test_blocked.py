@@ -41,15 +41,7 @@ def hand() -> str:
 # The same, of one age that is too much; with what disturbs besides.
 LATE = late().replace("[0, 5]", "4") + "disturbances: {command: 8 deg/s}\n"
 # Geromel and Colaneri 2006: proved from 2.7508 s on, and up to 2.7077 s a signal grows.
-PAIR = """\
-kind: switched-system
-name: pair
-time: continuous
-modes:
-  - {name: stiff, A: [[0, 1], [-10, -1]]}
-  - {name: soft, A: [[0, 1], [-0.1, -0.5]]}
-switching: {dwell_time: 2.73 s}
-"""
+PAIR = spec_text("stiff-and-soft")
 HARD = spec_text("hard")
 # Zelentsovsky 1994: stable for k in [0, K] iff K < 6.98513.
 OSCILLATOR = spec_text("oscillator")

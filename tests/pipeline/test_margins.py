@@ -15,24 +15,10 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.certify import refuted_at_once
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, SOFT_TISSUE
+from tests.tables import spec_text
 
-LINE = """\
-kind: switched-system
-name: line
-time: continuous
-parameters:
-  p: {nominal: 1, range: [0, 2]}
-modes:
-  - {name: line, A: [[-3 + p]]}
-switching: arbitrary
-"""
-SAMPLED = """\
-environments: {soft: {model: elastic, stiffness: 43.0356 N*m/rad}}
-controllers:
-  insertion: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2 N*m*s/rad}
-switching: arbitrary
-sampling: {period: 1 ms, delay: [0, 1]}
-"""
+LINE = spec_text("line")
+SAMPLED = spec_text("one-late-controller")
 EXAMPLE = Path("docs/examples/everything-at-once.nrs.yaml")
 
 

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import math
 from math import pi
 
@@ -16,6 +14,7 @@ from nrs_design.reporting.formatting import (
 )
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reporting.worst_case import scale_of
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
@@ -47,16 +46,7 @@ def test_lists():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (0.3, "0.3"),
-        (0.1, "0.1"),
-        (0.30001, "0.3001"),
-        (0.99999, "1"),
-        (3.2e-10, "3.2e-10"),
-        (1234567.0, "1.235e+06"),
-    ],
+    ("value", "text"), rows(__file__, "test_a_torque_above_its_limit_is_never_shown_at_it")
 )
 def test_a_torque_above_its_limit_is_never_shown_at_it(value, text):
     assert four_digits_up(value) == text

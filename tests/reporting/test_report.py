@@ -14,6 +14,7 @@ from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, cases
 from tests.support import COMMUTING, GIVEN, SOFT_TISSUE, family, replaced, write_spec
+from tests.tables import entry
 
 # Figures by their names, in order.
 FIGURES = dict.fromkeys(KINDS, "eigenvalues run") | {
@@ -135,8 +136,7 @@ def test_inconclusive_report_says_so_plainly(report):
 
 
 @pytest.mark.parametrize(
-    "case",
-    cases(("proved", "force", "discrete", "polynomial", "dwell", "parameter")),
+    "case", cases(("proved", "force", "discrete", "polynomial", "dwell", "parameter"))
 )
 def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
@@ -186,63 +186,7 @@ def test_many_modes_are_shortened(tmp_path):
     assert "The 40 modes, the 24 slowest of them" in words(many)
 
 
-SAID = {
-    # Case: facts of the head, and what the box must say.
-    "polynomial": (
-        ["Switching: arbitrary", "Common quadratic function: impossible"],
-        [
-            "the proof does not need one",
-            "whatever switches happen",
-            "every form is positive definite and every inequality",
-        ],
-    ),
-    "proved": (
-        ["No proof can exceed: "],
-        ["Every corner of the declared parameter ranges is a mode", "single-precision numbers"],
-    ),
-    "discrete": (["No proof can go below: "], ["shrinks at least by the factor rho in every"]),
-    "dwell": (
-        ["Switching: dwell time 2.76 s", "up to a constant factor"],
-        [
-            "The dwell time of 2.76 s is part of the claim",
-            "Switching earlier than 2.76 s after the last switch.",
-            "exponentials over the dwell time are enclosed rigorously",
-        ],
-    ),
-    "resets": (
-        ["the state is reset at some switches", "2 modes of at most 2 states"],
-        ["The resets are part of the claim", "other than the declared resets"],
-    ),
-    "parameter": (
-        ["k in its range: unknown but constant"],
-        ["must be constant: one value", "A constant parameter that changes while the system moves"],
-    ),
-    "blocks": (
-        ["not attained, up to a constant factor"],
-        ["at any rate slower than that of the slowest block", "the proof does not need one"],
-    ),
-    "period": (
-        ["Switching: arbitrary"],
-        [
-            "It is not said that the robot will do this",
-            "no guarantee is possible for all the signals that the spec allows",
-            "a longer dwell time, fewer transitions or narrower ranges",
-        ],
-    ),
-    "dwell-refuted": (
-        ["Switching: dwell time 2.7 s"],
-        ["no stability of any kind can be guaranteed under the declared switching"],
-    ),
-    "mixture": (
-        ["Switching: arbitrary"],
-        ["so would be every average of them", "Nothing is said about slower switching"],
-    ),
-    "refuted": (["Switching: arbitrary"], ["exponential stability under arbitrary switching is"]),
-    "inconclusive": (
-        ["Settled by: nothing"],
-        ["No positive definite Q", "a function of another kind may exist"],
-    ),
-}
+SAID = entry(__file__, "SAID")
 
 
 @pytest.mark.parametrize("case", cases(SAID))

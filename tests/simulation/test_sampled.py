@@ -23,8 +23,7 @@ def sampled(scenario=RUN, more=SAMPLED, **options):
 
 
 @pytest.mark.parametrize(
-    ("controllers", "other"),
-    [(IMPEDANCE, "withdrawal"), ({**IMPEDANCE, **PLACED}, "position")],
+    ("controllers", "other"), [(IMPEDANCE, "withdrawal"), ({**IMPEDANCE, **PLACED}, "position")]
 )
 def test_shorter_samples_come_to_continuous_time(controllers, other):
     """To first order in the period."""

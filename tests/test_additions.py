@@ -2,10 +2,8 @@
 
 import filecmp
 import json
-import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +12,7 @@ import pytest
 from tests.exporters.programs import STRICT, compiler
 from tests.package import PACKAGE
 from tests.simulation.interactions import text_of
+from tests.support import started
 from tests.tables import spec_text
 
 ADDITIONS = Path(__file__).parent / "additions"
@@ -91,14 +90,7 @@ def copy_with(folder: Path, add: Callable[[Path], None]) -> Path:
 
 def run_all(copy: Path, folder: Path, commands: tuple[tuple[str, ...], ...]) -> None:
     for command in commands:
-        done = subprocess.run(
-            [sys.executable, "-m", PACKAGE.name, *command],
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(copy)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = started("-m", PACKAGE.name, *command, cwd=folder, PYTHONPATH=str(copy))
         assert done.returncode == 0, (command, done.stdout, done.stderr)
 
 

@@ -16,7 +16,7 @@ from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.controllers.roundings import linear_forms
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, spec_in
 
 PERIOD = Fraction(1, 500)
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
@@ -27,9 +27,7 @@ def designed(path, text, *changes):
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
-    file = path / "law.nrs.yaml"
-    file.write_text(text)
-    return run_design(read_spec(file))
+    return run_design(read_spec(spec_in(path, text, "law")))
 
 
 def law_of(found, period=PERIOD):

@@ -16,7 +16,7 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import run_judgement
 from nrs_design.spec import read_spec
 from tests.design.motion_loops import PLACE, axis_with
-from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced
+from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced, spec_in
 from tests.tables import spec_text
 
 
@@ -26,9 +26,7 @@ def warnings(path):
 
 
 def changed(tmp_path, *replacements, source=SOFT_TISSUE):
-    path = tmp_path / "changed.nrs.yaml"
-    path.write_text(replaced(source.read_text(), *replacements))
-    return path
+    return spec_in(tmp_path, replaced(source.read_text(), *replacements), "changed")
 
 
 def about(found, name):
@@ -87,8 +85,7 @@ def test_given_gains_are_on_no_bound(tmp_path):
 
 def test_the_worst_fact_leads(tmp_path):
     """2.0 limits of the torque, 1.55 of the force error, 1.22 of the impedance; bounds are met."""
-    path = tmp_path / "holder.nrs.yaml"
-    path.write_text(spec_text("useless"))
+    path = spec_in(tmp_path, spec_text("useless"), "holder")
     said = [
         "simulated, insertion-and-withdrawal: a torque of 0.9968 N*m",
         "limit: steady force error over command 0.774",

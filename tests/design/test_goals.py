@@ -34,7 +34,7 @@ from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.design.classical import displayed_impedance_at, loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
-from tests.support import run
+from tests.support import run, spec_in
 from tests.tables import rows, spec_text
 
 
@@ -169,9 +169,7 @@ SAMPLED = (
 
 
 def written(folder, text, goals):
-    path = folder / "between.nrs.yaml"
-    path.write_text(text.replace("{GOALS}", goals))
-    return path
+    return spec_in(folder, text.replace("{GOALS}", goals), "between")
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
+from tests.support import spec_in
 from tests.tables import entry, spec_text
 
 from .conftest import gate_of
@@ -32,9 +33,7 @@ def written(folder, **changes):
     text = BY_RATE
     for key, value in (CASE | changes).items():
         text = text.replace(key, value)
-    path = folder / "by-rate.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return spec_in(folder, text, "by-rate")
 
 
 def goals_of(result):

@@ -11,7 +11,7 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked, li
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, spec_in
 from tests.tables import spec_text
 
 EXACT = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}\n    lever_arm: 0.24 m"
@@ -49,8 +49,7 @@ OSCILLATOR = spec_text("oscillator")
 
 def blocked(tmp_path: Path, text: str, budget: float) -> Blocked:
     """Find what blocks a text that is not decided in a budget; its work is less than half."""
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = spec_in(tmp_path, text, "a")
     limits = Limits(optimize_rate=False, budget=budget)
     result = run_certification(read_spec(path), limits=limits)
     assert result.certification.verdict is Verdict.INCONCLUSIVE
@@ -62,8 +61,7 @@ def blocked(tmp_path: Path, text: str, budget: float) -> Blocked:
 
 
 def verdict(tmp_path: Path, text: str, budget: float) -> Verdict:
-    path = tmp_path / "b.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = spec_in(tmp_path, text, "b")
     limits = Limits(optimize_rate=False, budget=budget)
     return run_certification(read_spec(path), limits=limits).certification.verdict
 
@@ -147,8 +145,7 @@ def test_a_dwell_time(tmp_path):
     assert line.write == f"dwell_time: {line.proved}"
     assert texts(found)[1:] == ["without modes[0] (stiff)", "without modes[1] (soft)"]
     # What is proved is the file with the line that is advised.
-    path = tmp_path / "c.nrs.yaml"
-    path.write_text(PAIR.replace("2.73 s", line.proved), encoding="utf-8")
+    path = spec_in(tmp_path, PAIR.replace("2.73 s", line.proved), "c")
     assert read_spec(path).sha256 == found.proved[0].sha256
 
 

@@ -19,6 +19,7 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
+from tests.support import spec_in
 
 from .free import FORCE, PD, SAMPLED, freed
 
@@ -39,9 +40,7 @@ def designed_of(folder, goals, **changes):
         }[old]
         assert before in text
         text = text.replace(before, f"{before.split(':')[0]}: {new}")
-    path = folder / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    designed = design_at_least_cost(read_spec(path))
+    designed = design_at_least_cost(read_spec(spec_in(folder, text, "a")))
     return designed, run_analysis(designed)
 
 

@@ -34,22 +34,7 @@ def test_round_trip(kind):
 
 
 @pytest.mark.parametrize(
-    ("kind", "controller", "values", "said"),
-    [
-        *(
-            ("impedance", name, values, f"gains of {name} are not")
-            for name, values in (
-                ("insertion", {}),
-                ("insertion", {"Mt": "1"}),
-                ("insertion", {"Mt": "1", "Bt": "1", "Kt": "1"}),
-                ("insertion", {"Kp": "1"}),
-                ("motion", {"Kp": "1", "Kd": "1", "Ki": "1"}),
-            )
-        ),
-        ("impedance", "other", {"Mt": "1", "Bt": "1"}, "insertion, motion, withdrawal"),
-        ("impedance", "insertion", None, "insertion, motion, withdrawal"),
-        ("force", "position", {"Kp": "1"}, "should be no gains at all"),
-    ],
+    ("kind", "controller", "values", "said"), rows(__file__, "test_wrong_set_of_gains")
 )
 def test_wrong_set_of_gains(kind, controller, values, said):
     spec, texts = gains(kind)

@@ -5,7 +5,7 @@ from making.notebook import made, notebook_of, page_of, read_cells, run_cells
 
 from tests.docs.pages import DOCS
 from tests.support import ROOT
-from tests.tables import entry
+from tests.tables import entry, rows
 
 SOURCE = entry(__file__, "SOURCE")
 
@@ -51,17 +51,6 @@ def test_the_tutorial(monkeypatch):
     monkeypatch.chdir(ROOT)
     cells = made(DOCS / "tutorial_python.py")
     printed = "".join(cell.printed for cell in cells)
-    said = [
-        "proved - a common quadratic function: impossible\n",
-        "Repeating the signal",
-        "insertion: Mt = 0.01 kg m^2, Bt = 2.15 N m s/rad\n",
-        "proved at ",
-        "\nrefuted\n1 to 150 N m/rad: proved\n",
-        "holds: True at the rate ",
-        "holds for both modes: False\nfails in m2 at x = ",
-        "soft-tissue.cert.json holds: True\n",
-        "its content does not match its id: it was altered\n",
-    ]
-    places = [printed.index(text) for text in said]
+    places = [printed.index(text) for text in rows(__file__, "test_the_tutorial")]
     assert places == sorted(places)
     assert sum(len(cell.images) for cell in cells) == 2

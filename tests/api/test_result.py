@@ -101,6 +101,7 @@ def test_words_and_units_are_those_of_the_axis():
 
 RECORDS = [DATA / f"silicone-soft-{i}.csv" for i in (1, 2, 3)]
 SCENARIOS = ROOT / "docs/examples/scenarios.nrs.yaml"
+RUNS = ("--scenario", "shaken", "--scenario", "withdrawal-switched")
 
 
 @pytest.mark.parametrize(
@@ -109,8 +110,8 @@ SCENARIOS = ROOT / "docs/examples/scenarios.nrs.yaml"
         (lambda: nrs.load(SOFT_TISSUE).optimize(), ("optimize", SOFT_TISSUE)),
         (lambda: nrs.identify(RECORDS), ("identify", "tissue", *RECORDS)),
         (
-            lambda: nrs.load(SCENARIOS).simulate("shaken"),
-            ("simulate", SCENARIOS, "--scenario", "shaken", "--no-bound"),
+            lambda: nrs.load(SCENARIOS).simulate("shaken", "withdrawal-switched"),
+            ("simulate", SCENARIOS, *RUNS, "--no-bound"),
         ),
     ],
     ids=["optimize", "identify", "simulate"],

@@ -1,7 +1,5 @@
 """Headless Chromium: pages as a reader sees them, and the rules of axe-core."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

@@ -109,6 +109,13 @@ def write_spec(
     return read_spec(path)
 
 
+def spec_in(folder: Path, text: str, name: str = "a") -> Path:
+    """Write a spec into a folder, and return where it is."""
+    path = folder / f"{name}.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
 # What the options of a command are is read from its function, and does not change.
 PARAMETERS_OF = cache(typer.main.get_params_from_function)
 
@@ -160,6 +167,27 @@ def _run(arguments: Sequence[str | Path | int], cwd: Path) -> subprocess.Complet
     return subprocess.CompletedProcess(command, code, out.getvalue(), err.getvalue())
 
 
+def started(
+    *command: str | Path, cwd: Path, python: bool = True, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Run a command in a process of its own, which finds the package: by default one of Python.
+
+    A hang ends after half an hour, which nothing here takes.
+    """
+    words = [sys.executable, *command] if python else command
+    settings = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    return subprocess.run(
+        [*map(str, words)],
+        capture_output=True,
+        text=True,
+        errors="surrogateescape",
+        cwd=cwd,
+        timeout=1800,
+        check=False,
+        env=settings,
+    )
+
+
 def typed(
     *arguments: str | Path | int,
     cwd: Path,
@@ -167,9 +195,7 @@ def typed(
     code: int | None = None,
 ) -> subprocess.CompletedProcess[str]:
     """Run the command line as a user types it, in a process of its own; see `run`."""
-    command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
-    env = {**os.environ, **(environment or {})}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+    done = started("-m", "nrs_design", *map(str, arguments), cwd=cwd, **(environment or {}))
     assert code in (None, done.returncode), f"{done.returncode}: {done.stderr}{done.stdout}"
     return done
 

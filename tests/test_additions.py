@@ -2,10 +2,8 @@
 
 import filecmp
 import json
-import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,20 +12,14 @@ import pytest
 from tests.exporters.programs import STRICT, compiler
 from tests.package import PACKAGE
 from tests.simulation.interactions import text_of
+from tests.support import started
+from tests.tables import spec_text
 
 ADDITIONS = Path(__file__).parent / "additions"
 LAG = "{type: lag-force, environment: soft, gain: 0.01 rad/(N*m), lag: 50 ms}"
 RUBBER = "{model: rubber, stiffness: 40 N*m/rad, damping: 1 N*m*s/rad}"
 SAMPLED = "sampling: {period: 2 ms, delay: [0, 1]}\ncontact: kept\n"
-TWO_MODES = """\
-kind: switched-system
-name: two
-time: discrete
-modes:
-  - {name: a, A: [["0.5", "0.2"], ["0", "0.4"]]}
-  - {name: b, A: [["0.4", "0"], ["0.3", "0.5"]]}
-switching: arbitrary
-"""
+TWO_MODES = spec_text("two-steps")
 MAIN = """#include "sampled_test.h"
 int main(void) { return (int)nrs_sampled_self_test() + 1; }
 """
@@ -98,14 +90,7 @@ def copy_with(folder: Path, add: Callable[[Path], None]) -> Path:
 
 def run_all(copy: Path, folder: Path, commands: tuple[tuple[str, ...], ...]) -> None:
     for command in commands:
-        done = subprocess.run(
-            [sys.executable, "-m", PACKAGE.name, *command],
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(copy)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = started("-m", PACKAGE.name, *command, cwd=folder, PYTHONPATH=str(copy))
         assert done.returncode == 0, (command, done.stdout, done.stderr)
 
 

@@ -4,6 +4,7 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.named_values import read_named_values
+from tests.tables import rows
 
 READERS = {"length": float, "name": str}
 
@@ -15,13 +16,7 @@ def test_values_are_read_by_name():
 
 
 @pytest.mark.parametrize(
-    ("entries", "message"),
-    [
-        (("width=1",), "'width=1' is no setting of a rod"),
-        (("length",), "'length' is no setting of a rod"),
-        (("length=1", "length=2"), "length is set twice"),
-        (("length=long",), "'long' is no value of length"),
-    ],
+    ("entries", "message"), rows(__file__, "test_what_is_no_setting_is_refused")
 )
 def test_what_is_no_setting_is_refused(entries, message):
     with pytest.raises(DesignError) as caught:

@@ -1,13 +1,11 @@
 """A settings file of matplotlib in the working directory, as a stranger may leave one there."""
 
 import os
-import subprocess
-import sys
 
 import pytest
 
 from tests.package import FILES
-from tests.support import ROOT
+from tests.support import ROOT, started
 from tests.test_structure import imports
 
 HOSTILE = "figure.dpi: 7\naxes.facecolor: red\ntimezone: Nowhere\nbackend: module://evil\n"
@@ -18,10 +16,7 @@ print(matplotlib.rcParams["timezone"], matplotlib.rcParamsOrig["figure.dpi"], os
 
 
 def look(folder, **settings):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
-    return subprocess.run(
-        [sys.executable, "-c", LOOK], cwd=folder, env=environment, capture_output=True, text=True
-    )
+    return started("-c", LOOK, cwd=folder, **settings)
 
 
 def test_settings_of_the_working_directory_are_not_read(tmp_path):
@@ -51,15 +46,7 @@ def test_whoever_draws_first_reads_no_settings(tmp_path, kind):
         "    if not name.endswith('__main__'): importlib.import_module(name)\n"
         "new_axes()\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", load],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = started("-c", load, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
 
 

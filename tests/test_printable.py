@@ -42,21 +42,13 @@ def test_a_byte_that_is_no_text_is_shown_as_a_shell_takes_it():
     assert printable(name) == visible(name) == r"\xc1\xa6.csv"
 
 
-@pytest.mark.parametrize(
-    "text", ["", "ä ≤ 5 µm", 'it\'s "fine" \\ 100 %', "a::b", "x # [y]", "漢字"]
-)
+@pytest.mark.parametrize("text", rows(__file__, "test_honest_text_stays_as_it_is"))
 def test_honest_text_stays_as_it_is(text):
     assert printable(text) == text
 
 
 @pytest.mark.parametrize(
-    ("text", "shown"),
-    [
-        ("::error::x", r"\x3a:error::x"),
-        ("  ::set-output name=a::b", r"  \x3a:set-output name=a::b"),
-        ("a ##[error]b", r"a \x23#[error]b"),
-        ("###[add-mask]b", r"#\x23#[add-mask]b"),
-    ],
+    ("text", "shown"), rows(__file__, "test_no_text_is_a_command_of_a_build_server")
 )
 def test_no_text_is_a_command_of_a_build_server(text, shown):
     assert printable(text) == shown

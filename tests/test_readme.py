@@ -1,7 +1,5 @@
 """What the README shows is what the program prints."""
 
-from __future__ import annotations
-
 import re
 import shutil
 from pathlib import Path

@@ -1,9 +1,6 @@
 """Each wing can be taken away: the core is whole without it, and says what is missing."""
 
-import os
 import shutil
-import subprocess
-import sys
 from types import SimpleNamespace
 
 import pytest
@@ -12,7 +9,7 @@ import nrs_design.wings
 from nrs_design.errors import NrsDesignError
 from nrs_design.wings import WINGS, load_wing, wing_of
 from tests.package import FILES, PACKAGE
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, started
 
 CORE = sorted(name for name in FILES if [*name.split("."), ""][1] not in WINGS)
 IMPORT_ALL = "import sys, importlib\nfor name in sys.argv[1:]: importlib.import_module(name)"
@@ -48,14 +45,8 @@ def house(request, tmp_path_factory):
     shutil.rmtree(folder / "nrs_design" / request.param)
 
     def run(*arguments):
-        return subprocess.run(
-            [sys.executable, *map(str, arguments)],
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        settings = {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        return started(*arguments, cwd=folder, **settings)
 
     def program(*arguments):
         # As `-m` does, but it takes the current folder off the path, in which this copy lies.

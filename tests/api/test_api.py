@@ -1,22 +1,19 @@
 """The library at the door."""
 
 import doctest
-import subprocess
-import sys
 
 import pytest
 
 import nrs_design as nrs
 from nrs_design.api import identified, matrices, study
-from tests.support import ROOT
+from tests.support import ROOT, started
 
 
 def test_import_loads_nothing_heavy():
     code = (
         "import sys, nrs_design; print(sorted({'numpy', 'pydantic', 'scipy'} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert started("-c", code, cwd=ROOT).stdout.strip() == "[]"
     assert set(nrs.__all__) <= set(dir(nrs))
     with pytest.raises(AttributeError, match="no attribute 'nope'"):
         _ = nrs.nope

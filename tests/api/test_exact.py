@@ -10,6 +10,7 @@ import pytest
 from nrs_design.api.exact import read_matrix, read_number, read_rows, time_of
 from nrs_design.errors import SpecError
 from nrs_design.proof.mode import Time
+from tests.tables import rows
 
 F = Fraction
 TENTH = F(3602879701896397, 2**55)
@@ -51,20 +52,10 @@ def test_integer_arrays_keep_large_numbers():
 @pytest.mark.parametrize(
     ("held", "said"),
     [
-        ([[1, 2], [3]], "different lengths"),
-        ([], "not a matrix"),
-        ([1, 2], "not a matrix"),
-        ("abc", "not a matrix"),
+        *rows(__file__, "test_what_is_no_matrix_is_refused"),
         (np.zeros(3), "not a matrix"),
-        (3, "not a matrix"),
-        ([[float("nan")]], "not a finite"),
-        ([[float("inf")]], "not a finite"),
-        ([[True]], "not a real number"),
         ([[1j]], "not a real number"),
         (np.array([[1 + 0j]]), "not a real number"),
-        ([[None]], "not a real number"),
-        ([["1/0"]], "divides by zero"),
-        ([[[1]]], "not a real number"),
     ],
 )
 def test_what_is_no_matrix_is_refused(held, said):

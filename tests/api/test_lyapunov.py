@@ -13,6 +13,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from tests.proof import truth
 from tests.support import matrix
+from tests.tables import rows
 
 F = Fraction
 entries = st.integers(-6, 6)
@@ -48,49 +49,23 @@ def test_holds_at_a_rate_that_is_decided():
 
 
 @pytest.mark.parametrize(
-    ("A", "time", "rate", "holds"),
-    [
-        (-1, Time.CONTINUOUS, F(0), True), (-1, Time.CONTINUOUS, F(1, 9), True),
-        (-1, Time.CONTINUOUS, F(1), False), (-3, Time.CONTINUOUS, F(2), True),
-        (-3, Time.CONTINUOUS, F(3), False), ("1/2", Time.DISCRETE, F(1), True),
-        ("1/2", Time.DISCRETE, F(5, 9), True), ("1/2", Time.DISCRETE, F(1, 2), False),
-        ("1/2", Time.DISCRETE, F(1, 9), False), (1, Time.DISCRETE, F(1), False),
-        (0, Time.DISCRETE, F(1, 9), True),
-    ],
-)  # fmt: skip
+    ("A", "time", "rate", "holds"), rows(__file__, "test_decided_at_the_rate_that_is_asked_for")
+)
 def test_decided_at_the_rate_that_is_asked_for(A, time, rate, holds):
-    found = check_quadratic(modes([[A]]), matrix([[1]]), time, rate)
+    found = check_quadratic(modes([[A]]), matrix([[1]]), Time[time], F(rate))
     assert found.holds is holds
     assert found.weak
     if holds:
-        assert found.rate == rate
+        assert found.rate == F(rate)
 
 
-@pytest.mark.parametrize(
-    ("A", "time", "rate"),
-    [
-        # Halving ends at 1/2, below the limit of 1, and 20 bisections go up to it.
-        (-1, Time.CONTINUOUS, 1 - F(1, 2**21)),
-        (-3, Time.CONTINUOUS, 3 - F(1, 2**19)),
-        ("-1/3", Time.CONTINUOUS, F(1398101, 2**22)),
-        ("1/2", Time.DISCRETE, F(1, 2) + F(1, 2**22)),
-        ("1/4", Time.DISCRETE, F(1, 4) + F(1, 2**21)),
-        (0, Time.DISCRETE, F(1, 2**21)),
-    ],
-)
+@pytest.mark.parametrize(("A", "time", "rate"), rows(__file__, "test_the_best_rate_by_hand"))
 def test_the_best_rate_by_hand(A, time, rate):
-    assert check_quadratic(modes([[A]]), matrix([[1]]), time).rate == rate
+    assert check_quadratic(modes([[A]]), matrix([[1]]), Time[time]).rate == F(rate)
 
 
 @pytest.mark.parametrize(
-    ("matrices", "P", "weak"),
-    [
-        ([[[0, 0], [0, 0]]], [[1, 2], [2, 1]], False),
-        ([[[0, 0], [0, 0]]], [[1, 1], [1, 1]], False),
-        ([[[0, 1], [-1, 0]], [[1, 0], [0, -1]]], [[1, 0], [0, 1]], False),
-        ([[[1, 0], [0, -1]], [[0, 1], [-1, 0]]], [[1, 0], [0, 1]], False),
-        ([[[0, 1], [-1, 0]], [[0, 0], [0, -1]]], [[1, 0], [0, 1]], True),
-    ],
+    ("matrices", "P", "weak"), rows(__file__, "test_weak_is_no_increase_in_any_mode")
 )
 def test_weak_is_no_increase_in_any_mode(matrices, P, weak):
     found = check_quadratic(modes(*matrices), matrix(P), Time.CONTINUOUS)
@@ -146,12 +121,8 @@ def test_the_verdict_comes_with_its_reason(A, P, time):
 
 
 @pytest.mark.parametrize(
-    ("beyond", "third"),
-    [
-        ("2e-3", "0.3"), ("2e-5", "0.33"), ("2e-9", "0.3333"), ("2e-17", "0.33333333"),
-        ("2e-33", "0.3333333333333333"), ("2e-34", "1/3"), ("0", "1/3"),
-    ],
-)  # fmt: skip
+    ("beyond", "third"), rows(__file__, "test_a_vector_has_as_few_digits_as_show_it")
+)
 def test_a_vector_has_as_few_digits_as_show_it(beyond, third):
     """``(x - y/3)^2 - e y^2`` is not positive within sqrt(e) of x = 1/3, y = 1."""
     P = matrix([[1, F(-1, 3)], [F(-1, 3), F(1, 9) - F(beyond)]])

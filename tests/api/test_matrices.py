@@ -11,6 +11,7 @@ import pytest
 import nrs_design as nrs
 from nrs_design.errors import DesignError, NrsDesignError, SpecError
 from tests.api.pairs import ROTATION, pair
+from tests.tables import rows
 
 
 def test_ways_to_give_the_same_modes():
@@ -75,14 +76,7 @@ def test_names_may_be_numbers():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (([],), "no modes"),
-        (([[[1, 2]]],), "not square"),
-        (([[[1, 2], [3]]],), "different lengths"),
-        (([[[float("nan")]]],), "not a finite"),
-        (([[[1]], [[1, 0], [0, 1]]],), "states"),
-        (({"a b": [[1]]},), "not a name"),
-        ((None,), "not a list of matrices"),
-        (("mine.nrs.yaml",), "a text, not a list"),
+        *rows(__file__, "test_wrong_input_is_told_in_words"),
         (([control.tf([1], [1, 1])],), r"m1 is not a matrix .*control\.ss"),
         (([[[Decimal("NaN")]]],), "NaN"),
     ],

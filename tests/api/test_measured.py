@@ -33,13 +33,6 @@ def test_arrays_are_read_as_a_file_is():
     assert (found.ranges, found.synthetic) == (read.ranges, False)
 
 
-def test_facts_are_those_of_the_command():
-    found = nrs.identify(TISSUE).to_dict()
-    said = document_of("identify", "tissue", *TISSUE, cwd=ROOT, code=0)
-    assert said.pop("schema")
-    assert json.loads(json.dumps(found)) == said
-
-
 def test_an_actuator():
     motor = nrs.identify(sorted(DATA.glob("actuator-*hz.csv")), "actuator")
     assert motor.ranges["time_constant"].value == pytest.approx(0.0351, rel=1e-3)

@@ -9,7 +9,7 @@ from nrs_design.api.proof_facts import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.remedies import margin_lines
 from nrs_design.search.margin import Bracket, CommandMargin, MarginBrackets
-from tests.support import SOFT_TISSUE, document_of, run
+from tests.support import SOFT_TISSUE, document_of, run, spec_in
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 THIRD = Fraction(1, 3)
@@ -63,9 +63,8 @@ def test_what_keeps_the_limit_in_json(tmp_path):
 @pytest.mark.slow
 def test_margins_of_a_sampled_loop(tmp_path):
     """One controller, for speed; delays of one and two samples are proved as well."""
-    path = tmp_path / "late.nrs.yaml"
     head, _, _ = TEXT.partition("  withdrawal:")
-    path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
+    path = spec_in(tmp_path, f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
     result = run(
         *("certify-switching", path.name, "--margin", "--budget", "0.3", "--out", "a.cert.json"),
         cwd=tmp_path,

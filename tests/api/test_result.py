@@ -9,7 +9,7 @@ import pytest
 import nrs_design as nrs
 from nrs_design import api
 from nrs_design.errors import DesignError
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, document_of
 
 # Settings and parts of results, beside what a verb returns.
 PARTS = {"AuditCheck", "Counterexample", "FittedRange", "Study"}
@@ -97,3 +97,28 @@ def test_words_and_units_are_those_of_the_axis():
     assert labels == ["Torque [N]", "Deflection [mm]", "Velocity [mm/s]"]
     optimum = study.optimize()
     assert optimum.to_dict()["controllers"][0]["units"]["Bt"] == "N*s/m"
+
+
+RECORDS = [DATA / f"silicone-soft-{i}.csv" for i in (1, 2, 3)]
+SCENARIOS = ROOT / "docs/examples/scenarios.nrs.yaml"
+RUNS = ("--scenario", "shaken", "--scenario", "withdrawal-switched")
+
+
+@pytest.mark.parametrize(
+    ("ask", "command"),
+    [
+        (lambda: nrs.load(SOFT_TISSUE).optimize(), ("optimize", SOFT_TISSUE)),
+        (lambda: nrs.identify(RECORDS), ("identify", "tissue", *RECORDS)),
+        (
+            lambda: nrs.load(SCENARIOS).simulate("shaken", "withdrawal-switched"),
+            ("simulate", SCENARIOS, *RUNS, "--no-bound"),
+        ),
+    ],
+    ids=["optimize", "identify", "simulate"],
+)
+def test_facts_are_those_of_the_command(ask, command):
+    """But for goals of a certificate, which `optimize` of the library does not look at."""
+    said = document_of(*command, cwd=ROOT, code=0)
+    assert said.pop("schema")
+    assert said.pop("certified", None) is None
+    assert json.loads(json.dumps(ask().to_dict())) == said

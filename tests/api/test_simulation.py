@@ -1,13 +1,11 @@
 """Runs: named signals with units, by place and by name."""
 
-import json
-
 import numpy as np
 import pytest
 
 import nrs_design as nrs
 from nrs_design.errors import CertificateError, DesignError
-from tests.support import ROOT, SOFT_TISSUE, document_of
+from tests.support import ROOT, SOFT_TISSUE
 
 SCENARIOS = ROOT / "docs/examples/scenarios.nrs.yaml"
 
@@ -46,13 +44,6 @@ def test_it_is_told_in_a_line_and_proves_nothing(found):
     assert repr(found) == "<Simulation scenarios: 2 runs, which prove nothing>"
     assert len(repr(found["shaken"])) < 80
     assert "<td>shaken</td>" in found._repr_html_()
-
-
-def test_facts_are_those_of_the_command(found):
-    names = ("--scenario", "shaken", "--scenario", "withdrawal-switched")
-    said = document_of("simulate", SCENARIOS, *names, "--no-bound", cwd=ROOT)
-    assert said.pop("schema")
-    assert json.loads(json.dumps(found.to_dict())) == said
 
 
 def test_a_run_is_drawn_by_the_name_of_its_scenario(found):

@@ -2,7 +2,6 @@
 
 import json
 import os
-import subprocess
 import sys
 
 import pytest
@@ -11,7 +10,7 @@ from typer.main import get_command
 from nrs_design import __version__
 from nrs_design.cli.app import COMMANDS, make_app
 from nrs_design.proof.evidence import KINDS
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run, thinned, typed
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, run, started, thinned, typed
 
 
 def test_version(tmp_path):
@@ -42,7 +41,7 @@ def loaded_by(tmp_path, *arguments, **environment):
         "    facts = {'modules': sorted(sys.modules), **{n: os.environ[n] for n in names}}\n"
         "    print(json.dumps(facts), file=sys.stderr)"
     )
-    result = start(tmp_path, "-c", program, *arguments, **environment)
+    result = started("-c", program, *arguments, cwd=tmp_path, **environment)
     return result, json.loads(result.stderr.splitlines()[-1])
 
 
@@ -63,16 +62,8 @@ def test_help_loads_no_part_of_a_design(tmp_path, arguments):
 # What checks a certificate by itself: the program, the file format, the proof; and the series of
 # the second opinion on exponentials.
 CHECKING = (
-    "cli",
-    "controllers",
-    "certificates",
-    "proof",
-    "models",
-    "errors",
-    "axis",
-    "files",
-    "printable",
-    "wings",
+    *("cli", "controllers", "certificates", "proof", "models"),
+    *("errors", "axis", "files", "printable", "wings"),
 )
 MOST_MODULES = 42
 
@@ -137,7 +128,7 @@ def test_a_defect_is_exit_code_4(tmp_path, verbose):
         "s.read_spec = fail\n"
         "from nrs_design.cli import main; main()"
     )
-    result = start(tmp_path, "-c", program, *verbose, "tune", COMMUTING)
+    result = started("-c", program, *verbose, "tune", COMMUTING, cwd=tmp_path)
     assert (result.returncode, result.stdout) == (4, "")
     assert "internal error: ZeroDivisionError: boom" in result.stderr
     assert "run it again as `nrs-design -v ...`" in result.stderr
@@ -159,7 +150,7 @@ def test_what_falls_into_an_import_ends_as_elsewhere(tmp_path, module, error, co
         "from nrs_design.cli import main; main()"
     )
     certificate = ROOT / "reports" / "commuting.cert.json"
-    result = start(tmp_path, "-c", program, "verify", "--json", certificate)
+    result = started("-c", program, "verify", "--json", certificate, cwd=tmp_path)
     assert (result.returncode, result.stderr[: len(said)]) == (code, said)
     assert result.stderr.count("\n") == bool(said)
 
@@ -168,30 +159,18 @@ def test_what_falls_into_an_import_ends_as_elsewhere(tmp_path, module, error, co
 def test_too_little_memory_is_no_verdict(tmp_path):
     """Under 120,000 KiB OpenBLAS ended the program with 1, which says that a spec is refuted."""
     limited = f'ulimit -v 120000; exec "{sys.executable}" -m nrs_design "$@"'
-    command = ["bash", "-c", limited, "bash", "certify-switching", str(COMMUTING)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    command = ("bash", "-c", limited, "bash", "certify-switching", COMMUTING)
+    done = started(*command, cwd=tmp_path, python=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert (
         done.stderr == "error: 117 MiB of memory are allowed, and 512 MiB are needed (ulimit -v)\n"
     )
 
 
-def start(tmp_path, *command, **environment):
-    return subprocess.run(
-        [sys.executable, *map(str, command)],
-        capture_output=True,
-        text=True,
-        errors="surrogateescape",
-        cwd=tmp_path,
-        check=False,
-        env=os.environ | {"PYTHONPATH": str(ROOT), **environment},
-    )
-
-
 def test_as_a_module_it_imports_nothing_from_the_working_folder(tmp_path):
     for name in ("typer", "rich", "ruamel", "json", "pydantic", "numpy"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit('taken over')")
-    result = start(tmp_path, "-m", "nrs_design", "certify-switching", COMMUTING)
+    result = started("-m", "nrs_design", "certify-switching", COMMUTING, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "taken over" not in result.stderr
 
@@ -201,7 +180,7 @@ def test_what_cannot_be_loaded_is_exit_code_4(tmp_path):
     broken.mkdir()
     (broken / "typer.py").write_text("raise ImportError('half\\ninstalled')")
     path = f"{broken}{os.pathsep}{ROOT}"
-    result = start(tmp_path, "-m", "nrs_design", "--version", PYTHONPATH=path)
+    result = started("-m", "nrs_design", "--version", cwd=tmp_path, PYTHONPATH=path)
     assert result.returncode == 4
     assert result.stderr.count("\n") == 1
     assert "cannot be loaded" in result.stderr
@@ -215,7 +194,7 @@ def test_a_warning_of_a_library_is_no_verdict(tmp_path):
         "s.read_spec = noisy\n"
         "from nrs_design.cli import main; main()"
     )
-    result = start(tmp_path, "-W", "error", "-c", program, "certify-switching", COMMUTING)
+    result = started("-W", "error", "-c", program, "certify-switching", COMMUTING, cwd=tmp_path)
     assert result.returncode == 0, result.stderr
 
 
@@ -227,7 +206,7 @@ def test_a_hostile_file_name_is_shown_and_changes_no_exit_code(tmp_path, spec):
     program = ("-m", "nrs_design")
     for command, expected in (("check", 0), ("certify-switching", 0), ("verify", 2)):
         arguments = [spec] * (2 if command == "verify" else 1)
-        result = start(tmp_path, *program, command, *arguments, PYTHONIOENCODING="ascii")
+        result = started(*program, command, *arguments, cwd=tmp_path, PYTHONIOENCODING="ascii")
         assert result.returncode == expected, result.stderr
         for line in (result.stdout + result.stderr).split("\n"):
             assert line.isprintable()

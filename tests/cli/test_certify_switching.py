@@ -1,5 +1,3 @@
-"""`nrs-design certify-switching`, as a user types it."""
-
 import json
 import os
 import subprocess
@@ -11,7 +9,7 @@ import pytest
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of, run, typed
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, document_of, run, started, typed
 
 EXAMPLES = ROOT / "specs" / "examples"
 RANGES = EXAMPLES / "oscillator-range.nrs.yaml"
@@ -134,13 +132,6 @@ def test_output_that_nobody_takes(tmp_path, opened, code, said):
 )
 def test_closed_streams(tmp_path, command, spec, closed):
     line = f'exec "$0" -m nrs_design {command} "$1" {closed}'
-    result = subprocess.run(
-        ["sh", "-c", line, sys.executable, str(spec)],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        check=False,
-    )
+    result = started("sh", "-c", line, sys.executable, spec, cwd=tmp_path, python=False)
     assert result.returncode == 0
     assert "internal error" not in result.stderr

@@ -5,6 +5,7 @@ import pytest
 from nrs_design.cli.errors import MAX_LISTED, MAX_SHOWN, excerpt
 from tests.spec.samples import SWITCHED
 from tests.support import document_of, run
+from tests.tables import rows
 from tests.terminal import run_on_terminal
 
 
@@ -43,12 +44,7 @@ def test_the_words_of_wrong_usage_are_printable(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("chekc", "a.nrs.yaml"), "No such command 'chekc'"),
-        (("check", "--no-such", "a.nrs.yaml"), "No such option: --no-such"),
-        (("certify-switching", "a.nrs.yaml", "--budget", "much"), "'much' is no budget"),
-    ],
+    ("arguments", "said"), rows(__file__, "test_wrong_usage_is_json_like_every_other_error")
 )
 def test_wrong_usage_is_json_like_every_other_error(tmp_path, arguments, said):
     document = document_of(*arguments, cwd=tmp_path, code=2)

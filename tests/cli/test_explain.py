@@ -1,5 +1,3 @@
-"""`nrs-design explain`, as a user types it."""
-
 import pytest
 
 from nrs_design.gating.rules import RULES, WORDS

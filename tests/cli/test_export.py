@@ -11,7 +11,7 @@ from nrs_design.exporters.record import ExportRecord
 from nrs_design.gating.lock import SCHEMA
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
-from tests.support import program_named, run
+from tests.support import program_named, run, spec_in
 
 SPECS = Path(__file__).parents[2] / "specs"
 SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
@@ -113,8 +113,7 @@ def sampled_spec():
 
 @pytest.fixture(scope="module")
 def sampled_certificate(tmp_path_factory):
-    file = tmp_path_factory.mktemp("sampled") / "every-2-ms.nrs.yaml"
-    file.write_text(sampled_text())
+    file = spec_in(tmp_path_factory.mktemp("sampled"), sampled_text(), "every-2-ms")
     return dump(run_certification(read_spec(file)).certificate)
 
 

@@ -6,30 +6,15 @@ import matplotlib.pyplot as plt
 import pytest
 
 from tests.gating.conftest import STABLE
-from tests.support import COMMUTING, ROOT, ends_soon, run
+from tests.support import ends_soon, run
+from tests.tables import entry, words_in
 
-ACTUATOR = sorted((ROOT / "specs/data").glob("actuator-?hz.csv"))
-RUNS = ROOT / "docs/examples/scenarios.nrs.yaml"
-SAMPLED = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 PAGE = b"<!DOCTYPE html>\n<html lang='en'>\n<title>mine</title>\n"
 slow = pytest.mark.slow
-COMMANDS = {
-    "certify-switching": ("certify-switching", COMMUTING, "--out", "x.cert.json"),
-    "schema": ("schema", "--out", "x.json"),
-    "gate-junit": ("gate", "small.nrs.yaml", "--format", "junit", "--out", "x"),
-    "report-html": ("report", COMMUTING, "--out", "x.html"),
-    "gate-sarif": ("gate", "small.nrs.yaml", "--format", "sarif", "--out", "x"),
-    "identify": ("identify", "actuator", *ACTUATOR, "--report", "x.html"),
-}
+COMMANDS = entry(__file__, "COMMANDS")
 QUICK = ("certify-switching", "schema")
 # What takes long is refused before it begins.
-BEFORE = {
-    "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
-    "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
-    "x.htm": ("identify", "actuator", *ACTUATOR, "--report", "x.htm"),
-    "x.html": ("report", SAMPLED, "--out", "x.html"),
-    "soft-tissue-sampled.mat": ("export", SAMPLED, "--format", "mat", "--out", "."),
-}
+BEFORE = entry(__file__, "BEFORE")
 
 
 def figure(suffix):
@@ -59,7 +44,7 @@ def foreign(path):
 )
 def test_what_is_ours_is_replaced_and_what_is_not_stays(name, tmp_path):
     (tmp_path / "small.nrs.yaml").write_text(STABLE)
-    typed = tuple(map(str, COMMANDS[name]))
+    typed = words_in(COMMANDS[name])
     assert run(*typed, cwd=tmp_path).returncode in (0, 1, 3)
     files = {path for path in tmp_path.rglob("*") if path.is_file()}
     again = run(*typed, cwd=tmp_path)
@@ -89,7 +74,7 @@ def test_a_place_that_holds_what_is_not_ours_is_refused_before_the_work(name, li
     else:
         path.write_bytes(foreign(path))
     with ends_soon():
-        done = run(*map(str, BEFORE[name]), cwd=tmp_path)
+        done = run(*words_in(BEFORE[name]), cwd=tmp_path)
     assert (done.returncode, name in done.stderr) == (2, True), done.stderr
     assert ("symbolic link" if link else "not overwritten") in done.stderr
     assert [p.name for p in tmp_path.iterdir()] == [name]

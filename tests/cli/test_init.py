@@ -1,7 +1,3 @@
-"""`nrs-design init`, as a user types it."""
-
-from __future__ import annotations
-
 from pathlib import Path
 
 from nrs_design.cli.init import named_after

@@ -1,5 +1,3 @@
-"""`nrs-design optimize`, as a user types it."""
-
 from tests.support import SOFT_TISSUE, document_of, run
 
 

@@ -17,6 +17,7 @@ from nrs_design.cli.printing import (
     say_failure,
     wrapped,
 )
+from tests.tables import rows
 
 
 class Terminal(io.StringIO):
@@ -82,13 +83,7 @@ def test_what_strangers_wrote_steers_no_terminal(capsys, print_line):
 
 
 @pytest.mark.parametrize(
-    ("as_json", "quiet", "out", "err"),
-    [
-        (False, False, "text\nmissed: all\n", "note\nanyway\n"),
-        (True, False, "missed: all\n", "note\nanyway\n"),
-        (False, True, "missed: all\n", "anyway\n"),
-        (True, True, "missed: all\n", "anyway\n"),
-    ],
+    ("as_json", "quiet", "out", "err"), rows(__file__, "test_what_json_and_quiet_silence")
 )
 def test_what_json_and_quiet_silence(capsys, as_json, quiet, out, err):
     with output(as_json=as_json, quiet=quiet):

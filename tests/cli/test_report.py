@@ -1,5 +1,3 @@
-"""`nrs-design report`, as a user types it."""
-
 import json
 
 import pytest

@@ -3,30 +3,17 @@
 import pytest
 
 from tests.support import ROOT, SOFT_TISSUE, run
-
-EXAMPLES, DATA = ROOT / "docs/examples", ROOT / "specs/data"
-RECORDS = [DATA / f"silicone-soft-{i}.csv" for i in (1, 2, 3)]
-CERTIFICATE = ROOT / "reports/soft-tissue.cert.json"
+from tests.tables import rows, words_in
 
 
 @pytest.mark.parametrize(
     ("most", "code", "arguments"),
-    [
-        (45, 0, ("certify-switching", SOFT_TISSUE)),
-        (60, 1, ("certify-switching", EXAMPLES / "hand-range.nrs.yaml", "--no-optimize-rate")),
-        # With two changes that are proved, one of them of the gains.
-        (105, 3, ("certify-switching", EXAMPLES / "pulling.nrs.yaml")),
-        (15, 0, ("check", SOFT_TISSUE)),
-        (30, 0, ("verify", CERTIFICATE, SOFT_TISSUE)),
-        (60, 0, ("identify", "tissue", *RECORDS)),
-        (70, 0, ("simulate", EXAMPLES / "scenarios.nrs.yaml", "--no-bound")),
-        (125, 0, ("optimize", SOFT_TISSUE)),
-    ],
-    ids=lambda value: value[0] if isinstance(value, tuple) else None,
+    rows(__file__, "test_words_and_columns"),
+    ids=lambda value: str(value).split()[0],
 )
 def test_words_and_columns(tmp_path, monkeypatch, most, code, arguments):
     monkeypatch.delenv("COLUMNS")
-    shown = run(*arguments, cwd=tmp_path, code=code).stdout
+    shown = run(*words_in(arguments), cwd=tmp_path, code=code).stdout
     # Paths are as long as this folder is deep.
     shown = shown.replace(str(ROOT), "")
     assert 0 < len(shown.split()) <= most

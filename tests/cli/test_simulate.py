@@ -1,11 +1,9 @@
-"""`nrs-design simulate`, as a user types it."""
-
 import pytest
 
 from nrs_design.reporting.figures.simulated import draw_simulated
 from nrs_design.reporting.images import to_png
 from tests.simulation.interactions import IMPEDANCE, PLACED, SAMPLED, simulated, text_of
-from tests.support import document_of, run
+from tests.support import document_of, run, spec_in
 
 RUN = (
     "command: {points: [[0 s, 0 deg/s], [0.5 s, 8 deg/s], [1 s, -8 deg/s]]}, "
@@ -16,9 +14,7 @@ RUN = (
 @pytest.fixture
 def spec(tmp_path):
     def write(scenario=RUN, more="", **options):
-        path = tmp_path / "small.nrs.yaml"
-        path.write_text(text_of(scenario=scenario, more=more, **options))
-        return path
+        return spec_in(tmp_path, text_of(scenario=scenario, more=more, **options), "small")
 
     return write
 
@@ -106,10 +102,8 @@ PRESSED = (
 
 @pytest.fixture
 def bounded(tmp_path):
-    path = tmp_path / "small.nrs.yaml"
     more = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
-    path.write_text(text_of(ALONE, RANGED, scenario=PRESSED, more=more))
-    return path
+    return spec_in(tmp_path, text_of(ALONE, RANGED, scenario=PRESSED, more=more), "small")
 
 
 @pytest.mark.slow

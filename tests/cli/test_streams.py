@@ -1,11 +1,10 @@
 """A reader that goes away changes nothing."""
 
-import subprocess
 import sys
 
 import pytest
 
-from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, typed
+from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, started, typed
 from tests.terminal import run_on_terminal
 
 COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TISSUE))
@@ -22,15 +21,8 @@ COMMUTING, PRINT_ERROR, SOFT_TISSUE = map(str, (COMMUTING, PRINT_ERROR, SOFT_TIS
 def test_head_does_not_change_the_exit_code(tmp_path, arguments, code):
     program = f'"{sys.executable}" -m nrs_design "$@" 2>&1'
     command = program + " | head -n 1 >/dev/null; echo ${PIPESTATUS[0]}"
-    done = subprocess.run(
-        ["bash", "-c", command, "bash", *arguments],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-    )
-    assert done.stdout == f"{code}\n"
-    assert done.stderr == ""
+    done = started("bash", "-c", command, "bash", *arguments, cwd=tmp_path, python=False)
+    assert (done.stdout, done.stderr) == (f"{code}\n", "")
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
-"""`nrs-design sweep`, as a user types it."""
-
 import pytest
 
 from nrs_design.cli.sweep import SWEPT
-from tests.support import SOFT_TISSUE, document_of, run
+from tests.support import SOFT_TISSUE, document_of, run, spec_in
 
 STIFFNESS = "environments.soft.stiffness"
 # Proved, refuted.
@@ -12,9 +10,7 @@ TWO = f"{STIFFNESS}=700,2000 N/m"
 
 @pytest.fixture
 def spec(tmp_path):
-    path = tmp_path / "mine.nrs.yaml"
-    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8"), encoding="utf-8")
-    return path.name
+    return spec_in(tmp_path, SOFT_TISSUE.read_text(encoding="utf-8"), "mine").name
 
 
 def test_what_a_point_says_is_what_the_command_says(tmp_path, spec):

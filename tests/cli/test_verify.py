@@ -1,14 +1,10 @@
-"""`nrs-design verify`, as a user types it."""
-
 import json
 import shutil
-import subprocess
-import sys
 
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, document_of, run
+from tests.support import COMMUTING, PRINT_ERROR, SOFT_TISSUE, document_of, run, started
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +37,7 @@ def test_disagreement_is_an_internal_error(certified):
         "sys.argv = ['nrs-design', *sys.argv[1:]]; from nrs_design.cli import main; main()"
     )
     for arguments in (["verify", "commuting.json", COMMUTING], ["certify-switching", COMMUTING]):
-        result = subprocess.run(
-            [sys.executable, "-c", program, *map(str, arguments)],
-            capture_output=True,
-            text=True,
-            cwd=certified,
-            check=False,
-        )
+        result = started("-c", program, *arguments, cwd=certified)
         assert result.returncode == 4
         assert "InternalError" in result.stderr
         assert "PROVED" not in result.stdout

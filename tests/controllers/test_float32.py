@@ -16,24 +16,12 @@ from nrs_design.controllers.float32 import (
     to_float32,
 )
 from nrs_design.errors import DesignError
+from tests.tables import rows
 
 LARGEST = (2 - Fraction(1, 2**23)) * 2**127
 
 
-@pytest.mark.parametrize(
-    ("value", "rounded"),
-    [
-        ("0.01", "0.00999999977648258209228515625"),
-        ("2.15", "2.150000095367431640625"),
-        ("1.04", "1.03999996185302734375"),
-        ("2060", "2060"),
-        ("117359.436", "117359.4375"),
-        ("0", "0"),
-        ("-0.1", "-0.100000001490116119384765625"),
-        ("16777217", "16777216"),  # 2^24 + 1, ties to even
-        ("16777219", "16777220"),
-    ],
-)
+@pytest.mark.parametrize(("value", "rounded"), rows(__file__, "test_known_numbers"))
 def test_known_numbers(value, rounded):
     assert to_float32(Fraction(value)) == Fraction(rounded)
     assert exact_decimal(to_float32(Fraction(value))) == rounded
@@ -95,13 +83,7 @@ def test_no_terminating_expansion():
         exact_decimal(Fraction(1, 3))
 
 
-@pytest.mark.parametrize(
-    ("value", "digits", "rounded"),
-    [
-        (2065.4, 3, "2070"), (2.1496, 3, "2.15"), (56.9706, 4, "56.97"), (9.99, 1, "10"),
-        (-0.012345, 2, "-0.012"), (0.0, 3, "0"),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("value", "digits", "rounded"), rows(__file__, "test_round_significant"))
 def test_round_significant(value, digits, rounded):
     assert round_significant(value, digits) == Fraction(rounded)
 

@@ -10,6 +10,7 @@ from nrs_design.errors import CertificateError, SpecError
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.support import FORCE_LIMIT, SOFT_TISSUE
+from tests.tables import rows
 
 PATHS = {"impedance": SOFT_TISSUE, "force": FORCE_LIMIT}
 
@@ -33,22 +34,7 @@ def test_round_trip(kind):
 
 
 @pytest.mark.parametrize(
-    ("kind", "controller", "values", "said"),
-    [
-        *(
-            ("impedance", name, values, f"gains of {name} are not")
-            for name, values in (
-                ("insertion", {}),
-                ("insertion", {"Mt": "1"}),
-                ("insertion", {"Mt": "1", "Bt": "1", "Kt": "1"}),
-                ("insertion", {"Kp": "1"}),
-                ("motion", {"Kp": "1", "Kd": "1", "Ki": "1"}),
-            )
-        ),
-        ("impedance", "other", {"Mt": "1", "Bt": "1"}, "insertion, motion, withdrawal"),
-        ("impedance", "insertion", None, "insertion, motion, withdrawal"),
-        ("force", "position", {"Kp": "1"}, "should be no gains at all"),
-    ],
+    ("kind", "controller", "values", "said"), rows(__file__, "test_wrong_set_of_gains")
 )
 def test_wrong_set_of_gains(kind, controller, values, said):
     spec, texts = gains(kind)
@@ -61,19 +47,7 @@ def test_wrong_set_of_gains(kind, controller, values, said):
 
 @pytest.mark.parametrize(
     ("controller", "gain", "value", "reason"),
-    [
-        ("insertion", "Bt", "2.15", "single-precision"),
-        ("insertion", "Bt", "1e99", "single-precision"),
-        ("insertion", "Bt", "0.0625", "outside its bounds"),
-        ("insertion", "Bt", "20.000001907348632812", "single-precision"),
-        ("insertion", "Bt", "20.0000019073486328125", "outside its bounds"),
-        ("insertion", "Mt", "0", "outside its bounds"),
-        ("insertion", "Mt", "2", "outside its bounds"),
-        ("motion", "Kd", "0", "not positive"),
-        ("motion", "Kp", "-117359.4375", "not positive"),
-        ("motion", "Kd", "2061", "what the spec fixes"),
-        ("motion", "Kp", "117359.4453125", "what the spec fixes"),
-    ],
+    rows(__file__, "test_gains_that_the_spec_does_not_allow"),
 )
 def test_gains_that_the_spec_does_not_allow(controller, gain, value, reason):
     spec, texts = gains()

@@ -16,7 +16,7 @@ from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.controllers.roundings import linear_forms
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, replaced, spec_in
 
 PERIOD = Fraction(1, 500)
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
@@ -24,12 +24,7 @@ MIXED = ROOT / "docs/examples/mixed-controllers.nrs.yaml"
 
 
 def designed(path, text, *changes):
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    file = path / "law.nrs.yaml"
-    file.write_text(text)
-    return run_design(read_spec(file))
+    return run_design(read_spec(spec_in(path, replaced(text, *changes))))
 
 
 def law_of(found, period=PERIOD):

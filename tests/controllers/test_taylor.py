@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.taylor import UNIT, exponential_between, exponential_nearly
 from nrs_design.proof.enclosure import exponential, overlap, precision
 from nrs_design.proof.matrix import RationalMatrix
+from tests.tables import rows
 
 DIGITS = Fraction(1, 10**60)
 
@@ -38,10 +39,7 @@ def norm(M):
     return max(sum(map(abs, row)) for row in M)
 
 
-@pytest.mark.parametrize(
-    ("rows", "time"),
-    [(((1,),), 200), (((-1,),), 200), (((0, 1), (0, 0)), 1), (((1, 0), (3, -2)), 16)],
-)
+@pytest.mark.parametrize(("rows", "time"), rows(__file__, "test_twice_the_time_is_one_more_square"))
 def test_twice_the_time_is_one_more_square(rows, time):
     """The same exponent is halved once more: ``2 |E| e + e^2`` and n from rounding."""
     (once, error), (twice, more) = (

@@ -10,19 +10,10 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
+from tests.tables import entry
 
 PERIOD, NOISE, RATE = 1e-3, 0.1, 40.0
-SPEC = ThresholdLogicSpec.model_validate(
-    {
-        "type": "thresholds",
-        "start": "in",
-        "signals": {"command": {"noise": "0.1 rad/s", "age": "4 ms", "largest_rate": "40 rad/s^2"}},
-        "switches": [
-            {"from": "in", "to": "out", "command": {"below": "-0.5 rad/s"}},
-            {"from": "out", "to": "in", "command": {"above": "0.5 rad/s"}},
-        ],
-    }
-)
+SPEC = ThresholdLogicSpec.model_validate(entry(__file__, "SPEC"))
 LOGIC = StepLogic.of(SPEC, ("in", "out"), Fraction(1, 1000))
 NO_TIMER = replace(LOGIC, stays=(0, 0))
 

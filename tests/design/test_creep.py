@@ -13,7 +13,7 @@ from nrs_design.pipeline.design import run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from tests.loop.frames import frame_of
-from tests.support import SOFT_TISSUE, replaced
+from tests.support import SOFT_TISSUE, replaced, spec_in
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 SENSOR = """
@@ -27,9 +27,7 @@ ERROR = 0.0273
 
 def designed(path, more="", *changes, sensor=SENSOR):
     text = replaced(TEXT, *changes)
-    file = path / "sensed.nrs.yaml"
-    file.write_text(f"{text}{sensor}{more}\n", encoding="utf-8")
-    found = run_design(read_spec(file))
+    found = run_design(read_spec(spec_in(path, f"{text}{sensor}{more}\n", "sensed")))
     assert found is not None
     return found
 

@@ -16,8 +16,8 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.pipeline.scenarios import run_judgement
 from nrs_design.spec import read_spec
 from tests.design.motion_loops import PLACE, axis_with
-from tests.support import FORCE_LIMIT, SOFT_TISSUE, replaced
-from tests.tables import spec_text
+from tests.support import spec_in
+from tests.tables import edited, rows, spec_text
 
 
 def warnings(path):
@@ -25,81 +25,17 @@ def warnings(path):
     return [str(doubt) for doubt in run_judgement(run_design(loaded)).warnings]
 
 
-def changed(tmp_path, *replacements, source=SOFT_TISSUE):
-    path = tmp_path / "changed.nrs.yaml"
-    path.write_text(replaced(source.read_text(), *replacements))
-    return path
-
-
-def about(found, name):
-    return [text for text in found if text.startswith(f"{name}: ") and " is on its " not in text]
-
-
-def test_the_withdrawal_of_the_thesis_is_doubted_and_its_bounds_are_named(tmp_path):
-    """Mt = 0.01, Bt = 1.04: Ms 3.58 at the nominal stiffness, more at the stiffest tissue."""
-    found = warnings(SOFT_TISSUE)
-    assert about(found, "insertion") == []
-    (text,) = about(found, "withdrawal")
-    assert "sensitivity peak Ms 3.753 (usual: at most 2)" in text
-    assert "gain margin 1.716 (usual: at least 2)" in text
-    assert text.endswith("max_sensitivity_peak, min_gain_margin, min_phase_margin")
-    assert "insertion: Mt is on its lower bound 0.01 kg*m^2" in found
-    assert not any("Bt is on" in text for text in found)
-
-
-def test_a_goal_for_the_peak_speaks_of_gain_and_phase_too(tmp_path):
-    path = changed(tmp_path, ("switching:", "goals: {max_sensitivity_peak: 4}\nswitching:"))
-    assert about(warnings(path), "withdrawal") == []
-
-
-def test_a_goal_for_the_phase_does_not_speak_of_the_gain(tmp_path):
-    path = changed(tmp_path, ("switching:", "goals: {min_phase_margin: 20 deg}\nswitching:"))
-    (text,) = about(warnings(path), "withdrawal")
-    assert "phase margin" not in text
-    assert "gain margin" in text
-
-
-def test_an_impedance_ten_times_off_and_an_upper_bound(tmp_path):
-    """3 N m over 8 deg/s are 21.5 N m s/rad, and Bt is at most 2."""
-    replacements = (("max: 20 N*m*s/rad", "max: 2 N*m*s/rad"), ("0.3 N*m", "3 N*m"))
-    found = warnings(changed(tmp_path, *replacements))
-    (text,) = about(found, "insertion")
-    assert "factor off the desired impedance 10." in text
-    assert "insertion: Bt is on its upper bound 2 N*m*s/rad" in found
-
-
-@pytest.mark.parametrize("goal", [None, "max_force_error: 0.6"])
-def test_a_steady_force_error_of_half_the_command(tmp_path, goal):
-    """Thesis 6.3.3.1: Kp = 0.02 leaves 0.537 of the command at the nominal stiffness."""
-    given = "    goals: {max_force_error: 0.55}\n"
-    replaced = (given, f"    goals: {{{goal}}}\n" if goal else "")
-    found = warnings(changed(tmp_path, replaced, source=FORCE_LIMIT))
-    found = [text for text in found if text.startswith("force: ")]
-    assert len(found) == (goal is None)
-    if goal is None:
-        assert "steady force error over command 0.5465 (usual: at most 0.5)" in found[0]
-
-
-def test_given_gains_are_on_no_bound(tmp_path):
-    path = changed(tmp_path, ("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2"))
-    assert not any(" is on its " in text for text in warnings(path))
-
-
-def test_the_worst_fact_leads(tmp_path):
-    """2.0 limits of the torque, 1.55 of the force error, 1.22 of the impedance; bounds are met."""
-    path = tmp_path / "holder.nrs.yaml"
-    path.write_text(spec_text("useless"))
-    said = [
-        "simulated, insertion-and-withdrawal: a torque of 0.9968 N*m",
-        "limit: steady force error over command 0.774",
-        "insert: factor off the desired impedance 2",
-        "withdraw: factor off the desired impedance 2",
-        "withdraw: the same law, gains and contacts as insert",
-        "insert: Bt is on its lower bound 7 N*m*s/rad",
-        "withdraw: Bt is on its lower bound 7 N*m*s/rad",
-    ]
-    found = warnings(path)
-    assert [text[: len(start)] for text, start in zip(found, said, strict=True)] == said
+@pytest.mark.parametrize("case", rows(__file__, "test_a_design_is_doubted"))
+def test_a_design_is_doubted(tmp_path, case):
+    """Each doubt of a controller in turn begins as its row says, and says these words."""
+    text = edited(spec_text(case["base"]), case.get("edit", []))
+    found = warnings(spec_in(tmp_path, text))
+    found = [doubt for doubt in found if doubt.startswith(case.get("about", ""))]
+    assert len(found) == len(case["says"])
+    for doubt, words in zip(found, case["says"], strict=True):
+        assert all(word in doubt for word in words[1:])
+        assert doubt.startswith(words[0])
+        assert not any(word in doubt for word in case.get("never", []))
 
 
 F = Fraction

@@ -9,6 +9,7 @@ import pytest
 
 from nrs_design.cli import exit_codes
 from nrs_design.controllers.laws import ProportionalForce
+from nrs_design.design import measures
 from nrs_design.design.force_loop import Approach
 from nrs_design.design.goals import ForceRequirement, Requirement, corners_of
 from nrs_design.design.impedance_optimum import ImpedanceLoop
@@ -33,7 +34,8 @@ from nrs_design.pipeline.runs import run_interaction
 from nrs_design.spec import read_spec
 from tests.design.classical import displayed_impedance_at, loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
-from tests.support import run
+from tests.support import run, spec_in
+from tests.tables import rows, spec_text
 
 
 def interval(nominal, low, high):
@@ -132,23 +134,10 @@ def test_a_spring_is_measured_too():
 
 
 @pytest.mark.parametrize(
-    ("measure", "value", "text"),
-    [
-        (SENSITIVITY_PEAK, 1.59201, "1.593"),
-        (SENSITIVITY_PEAK, 2.0000001, "2.001"),
-        (SENSITIVITY_PEAK, 2.0, "2"),
-        (GAIN_MARGIN, 1.0006999, "1"),
-        (GAIN_MARGIN, 5.39999, "5.399"),
-        (PHASE_MARGIN, math.radians(29.99999), "29.99 deg"),
-        (DELAY_MARGIN, 0.0123456, "12.34 ms"),
-        (IMPEDANCE_ERROR, 10.0001, "10.01"),
-        (GAIN_MARGIN, math.inf, "unlimited"),
-        (SENSITIVITY_PEAK, math.inf, "unbounded"),
-        (GAIN_MARGIN, 0.0, "0"),
-    ],
+    ("measure", "value", "text"), rows(__file__, "test_text_is_rounded_to_the_unfavorable_side")
 )
 def test_text_is_rounded_to_the_unfavorable_side(measure, value, text):
-    assert measure.text(value) == text
+    assert getattr(measures, measure).text(value) == text
 
 
 def test_goals_are_written_in_the_units_of_the_spec():
@@ -170,21 +159,7 @@ def test_violation_is_positive_only_where_the_goal_is_missed(measure, met, goal,
 # A motor with a load, and contact whose margins are worst inside its range: Ms 3.42, a disk margin
 # of 0.334 and a delay margin of 42.6 ms at 81.3 N m/rad, a phase margin of 27.8 deg at 60 N m/rad
 # (python-control).
-SPEC = """kind: interaction-design
-name: between
-actuator: {gain: 0.00102 rad/s/rpm, time_constant: 0.08627 s, load_inertia: 0.3039 kg*m^2}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.34508 s, derivative_gain: 414 rpm*s/rad,
-  zero: 30.52 1/s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: kelvin-voigt, damping: 0.1618 N*m*s/rad,
-    stiffness: {nominal: 25.71 N*m/rad, range: [25.71 N*m/rad, 257.1 N*m/rad], varies: false}}
-controllers:
-  c0: {type: impedance, environment: soft, Mt: 0.2156 kg*m^2, Bt: 2.128 N*m*s/rad}
-goals: {GOALS}
-contact: kept
-switching: arbitrary
-"""
+SPEC = spec_text("between-corners")
 # Sampled, with a range: no proof covers what is between.
 SAMPLED = (
     SPEC.replace(", load_inertia: 0.3039 kg*m^2", "")
@@ -194,22 +169,12 @@ SAMPLED = (
 
 
 def written(folder, text, goals):
-    path = folder / "between.nrs.yaml"
-    path.write_text(text.replace("{GOALS}", goals))
-    return path
+    return spec_in(folder, text.replace("{GOALS}", goals), "between")
 
 
 @pytest.mark.parametrize(
     ("goals", "standing"),
-    [
-        ("{max_sensitivity_peak: 2.4}", "missed"),
-        ("{min_phase_margin: 38 deg}", "missed"),
-        ("{min_delay_margin: 50 ms}", "missed"),
-        ("{min_disk_margin: 0.5}", "missed"),
-        ("{max_sensitivity_peak: 3.5}", "met"),
-        ("{min_disk_margin: 0.32}", "met"),
-        ("{min_delay_margin: 30 ms}", "met"),
-    ],
+    rows(__file__, "test_a_goal_is_met_over_the_whole_range_or_missed_between"),
 )
 def test_a_goal_is_met_over_the_whole_range_or_missed_between(tmp_path, goals, standing):
     loaded = read_spec(written(tmp_path, SPEC, goals))

@@ -13,16 +13,14 @@ from nrs_design.loop.cut_loop import characteristic
 from nrs_design.pipeline.design import run_analysis, run_open_loops
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
-from tests.support import ROBOT, ROOT, SOFT_TISSUE
+from tests.support import ROBOT, ROOT, SOFT_TISSUE, spec_in
 
 FILTER = "sensor: {filter: {order: 2, cutoff: 60 Hz}}\n"
 
 
 def filtered(folder):
     """Return soft tissue with a filter of the force."""
-    file = folder / "filtered.nrs.yaml"
-    file.write_text(SOFT_TISSUE.read_text() + FILTER)
-    return file
+    return spec_in(folder, SOFT_TISSUE.read_text() + FILTER, "filtered")
 
 
 def space(part):
@@ -68,9 +66,8 @@ FIELDS = ("sensitivity_peak", "gain_margin", "phase_margin", "delay_margin", "di
 def sampled(folder):
     """Insertion alone, every 2 ms, with a force sample of either age."""
     head, _, _ = SOFT_TISSUE.read_text().partition("  withdrawal:")
-    file = folder / "sampled.nrs.yaml"
-    file.write_text(f"{head}switching: arbitrary\nsampling: {{period: 2 ms, delay: [0, 1]}}\n")
-    return file
+    more = "switching: arbitrary\nsampling: {period: 2 ms, delay: [0, 1]}\n"
+    return spec_in(folder, head + more)
 
 
 @pytest.fixture(params=["sampled", *SPECS])

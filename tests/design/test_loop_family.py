@@ -17,6 +17,7 @@ from nrs_design.design.transfer import TransferFunction, frequency_response, to_
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from tests.design.classical import closed_loop_polynomial, open_loop
 from tests.design.motion_loops import EXACT, PLACE, axis_with
+from tests.tables import rows
 
 SOFT = ImpedanceLoop(EXACT, Elastic(43.0356))
 
@@ -62,9 +63,7 @@ def bisect_limit(motion, damping, Mt, Bt, high=1e7):
 
 
 @pytest.mark.parametrize(
-    ("Bt", "limit", "tolerance"),
-    # Recomputed for this robot, Mt = 0.01; 75.9 N m/rad lies inside the range of a surgeon's hand.
-    [(1.04, 75.9, 0.3), (2.11, 225.6, 0.5), (2.15, 232.3, 0.5)],
+    ("Bt", "limit", "tolerance"), rows(__file__, "test_known_stiffness_limits")
 )
 def test_known_stiffness_limits(Bt, limit, tolerance):
     found = stiffness_limit(SOFT, 0.01, Bt)

@@ -15,7 +15,6 @@ from nrs_design.design.transfer import TransferFunction, multiply
 from nrs_design.models.contact import Elastic, Hand, KelvinVoigt
 from tests.design.classical import displayed_impedance_at, loop_margins, open_loop
 from tests.design.motion_loops import EXACT, PLACE, axis_with
-from tests.support import ROOT, document_of, run
 
 
 def rows(loop, admittances):
@@ -89,7 +88,6 @@ def test_extremes_of_the_displayed_impedance_are_those_of_a_grid(Mt):
     assert high[0] >= grid.max() * (1 - 1e-12)
 
 
-HANDS_ON = ROOT / "docs/examples/hands-on.nrs.yaml"
 # G of the thesis, 6.1, and an ideal one.
 MOTION = TransferFunction((0.99, 56.82), (0.0351, 1.997, 56.82))
 BAND = 4 * np.pi
@@ -150,41 +148,3 @@ def test_unstable_is_the_worst():
     loops = Loops(np.array([[0.0, 0.0, 50.0]]), np.array([[1.0, -8.0, 0.0]]))
     assert hand_effort(loops, Elastic(50.0), BAND)[0] == np.inf
     assert transparency(loops, BAND)[0] == 0.0
-
-
-def table(mass, damping):
-    """The example with an admittance of table 7.1."""
-    text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", f"{mass} kg*m^2")
-    text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", f"{damping} kg*m^2/s")
-    return text.replace("contact: losable", "contact: kept")
-
-
-@pytest.mark.slow
-def test_the_lightest_admittance_of_table_7_1_misses_the_goals_of_a_hand(tmp_path):
-    """Those that are designed meet them, as the recorded answer of `optimize` says."""
-    (tmp_path / "table.nrs.yaml").write_text(table(1, 4))
-    missed = run("optimize", "table.nrs.yaml", cwd=tmp_path, code=1)
-    assert "effort of the hand" in missed.stdout
-    assert "MISSED" in missed.stdout
-
-
-@pytest.mark.parametrize(("mass", "damping", "code"), [(1, 8, 0), (2, 4, 1)])
-def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mass, damping, code):
-    """Each is stable for every constant hand; one with less damping is pumped by its changes."""
-    (tmp_path / "table.nrs.yaml").write_text(table(mass, damping))
-    result = run(
-        "certify-switching", "table.nrs.yaml", "--out", "ours.json", cwd=tmp_path, code=code
-    )
-    assert ("Repeating the signal" in result.stdout) == (code == 1)
-
-
-def test_a_spring_in_the_admittance(tmp_path):
-    """Kt of 5 N m/rad beside a hand of 25: at rest it gives way by 25/30; the proof takes it up."""
-    damping = "4.6 kg*m^2/s"
-    text = table("0.1", "4.6").replace(damping, f"{damping}\n    Kt: 5 N*m/rad")
-    (tmp_path / "spring.nrs.yaml").write_text(text)
-    (light,) = document_of("optimize", "spring.nrs.yaml", cwd=tmp_path, code=1)["controllers"]
-    goals = {item["goal"]: item for item in light["goals"]}
-    assert goals["max_hand_effort"]["worst"] is None
-    assert goals["min_transparency"]["worst"] < 24.9984 / 29.9984
-    run("certify-switching", "spring.nrs.yaml", "--out", "o.json", cwd=tmp_path, code=0)

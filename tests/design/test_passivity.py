@@ -20,6 +20,7 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.thesis import thesis
 from tests.design.motion_loops import LAG, PD, PLACE, interval
+from tests.tables import rows
 
 ONE = Fraction(1)
 
@@ -49,10 +50,7 @@ def test_a_loop_that_pushes_back_is_not_passive_at_rest():
     assert (band.passive, band.broken) == (0, None)
 
 
-@pytest.mark.parametrize(
-    ("Mt", "Bt", "hertz"),
-    [(1, 4, 2.263), (2, 4, 1.643), (3, 4, 1.355), (1, 8, 3.06), (3, 8, 1.880)],
-)
+@pytest.mark.parametrize(("Mt", "Bt", "hertz"), rows(__file__, "test_the_robot_of_the_thesis"))
 def test_the_robot_of_the_thesis(Mt, Bt, hertz):
     """Chapter 7; 1.36 Hz and 3.06 Hz are what an independent program rounds to."""
     band = passive_band(thesis.CLOSED_LOOP, Fraction(Mt), Fraction(Bt))

@@ -37,6 +37,7 @@ from nrs_design.thesis import thesis
 from tests.design.classical import displayed_impedance_at
 from tests.design.motion_loops import interval
 from tests.support import FORCE_LIMIT
+from tests.tables import rows
 
 SOFT = "41.504256", "44.246592"  # 720.56 N/m and 768.17 N/m at 0.24 m
 FOUND = {
@@ -59,12 +60,7 @@ def loop(Mt, Bt, environment, axis=thesis.AXIS, **ranges):
 
 
 @pytest.mark.parametrize(
-    ("Mt", "Bt", "stiffness", "peak"),
-    [
-        ("0.01", "1.04", SOFT, "3.75298"),
-        ("0", "1.04", ("25", "90.432"), "3.36110"),
-        ("0", "2.15", ("25", "90.432"), "2.00363"),
-    ],
+    ("Mt", "Bt", "stiffness", "peak"), rows(__file__, "test_known_peaks_over_stiffness")
 )
 def test_known_peaks_over_stiffness(Mt, Bt, stiffness, peak):
     """By Sturm chains elsewhere, to six digits: rounded up it is proved, rounded down it is not."""

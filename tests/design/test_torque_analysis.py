@@ -12,7 +12,7 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
 from tests.literature.test_colgate_schenkel import is_passive
-from tests.support import document_of, replaced, run
+from tests.support import document_of, replaced, run, spec_in
 
 TEXT = TEMPLATES["torque-interface"]
 AT_ONCE = ((", latency: 0.3 ms", ""), ("  dead_time: 0.2 ms", "  #"))
@@ -23,8 +23,7 @@ RANGED = "friction: {nominal: 1 N*m*s/rad, range: [0.4 N*m*s/rad, 2 N*m*s/rad]}"
 @pytest.fixture
 def analyzed(tmp_path):
     def make(*edits):
-        path = tmp_path / "mine.nrs.yaml"
-        path.write_text(replaced(TEXT, *edits), encoding="utf-8")
+        path = spec_in(tmp_path, replaced(TEXT, *edits), "mine")
         return run_analysis(run_design(read_spec(path))).torque
 
     return make
@@ -46,8 +45,7 @@ def test_it_is_not_decided_otherwise(analyzed, edits):
 
 
 def test_tune_prints_it(tmp_path):
-    path = tmp_path / "mine.nrs.yaml"
-    path.write_text(TEXT, encoding="utf-8")
+    path = spec_in(tmp_path, TEXT, "mine")
     said = run("tune", path, cwd=tmp_path, code=0).stdout
     assert "Colgate and Schenkel" in said
     items = document_of("tune", path, cwd=tmp_path)["torque"]

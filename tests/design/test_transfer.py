@@ -17,6 +17,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from tests.design.motion_loops import PRINTED
+from tests.tables import rows
 
 coefficients = st.lists(st.floats(-5, 5).map(lambda x: round(x, 3)), min_size=1, max_size=5)
 
@@ -46,19 +47,7 @@ def test_trim_keeps_the_last_coefficient():
 
 
 @pytest.mark.parametrize(
-    ("polynomial", "expected"),
-    [
-        ([1, 2, 3, 4], True),
-        ([1, 2, 2, 4], False),  # +-j sqrt(2): on the axis is not Hurwitz
-        ([1, 1, 2, 8], False),
-        ([-1, -2, -3, -4], True),
-        ([0, 1, 2], True),  # a leading zero only lowers the degree
-        ([0, 0, 5], True),
-        ([0, 0, 0], False),
-        ([1, 0], False),
-        ([1, 2, 0], False),
-        ([1, 1, math.nan], False),
-    ],
+    ("polynomial", "expected"), rows(__file__, "test_hurwitz_on_textbook_polynomials")
 )
 def test_hurwitz_on_textbook_polynomials(polynomial, expected):
     assert bool(hurwitz(polynomial)) is expected

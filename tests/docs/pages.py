@@ -1,7 +1,5 @@
 """What pages show to be typed: sessions, commands and Python."""
 
-from __future__ import annotations
-
 import re
 
 from tests.support import ROOT

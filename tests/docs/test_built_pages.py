@@ -6,16 +6,10 @@ import pytest
 
 from tests.browser import faults_of, open_file, overflow_of, severe
 from tests.support import ROOT
+from tests.tables import entry
 
 SITE = ROOT / "site"
-LOOKED_AT = [
-    "index.html",
-    "tutorial.html",
-    "design/sampling.html",
-    "certificates/README.html",
-    "reference/spec.html",
-    "explanation/cost.html",
-]
+LOOKED_AT = entry(__file__, "LOOKED_AT")
 
 pytestmark = pytest.mark.browser
 

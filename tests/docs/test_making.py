@@ -11,6 +11,7 @@ from making.offline import loaded_from_elsewhere
 
 from nrs_design.design.impedance_optimum import impedance_cost, optimize_impedance
 from nrs_design.thesis.table import counts_line, printed_errors
+from tests import tables
 from tests.support import ROOT, SOFT_TISSUE
 from tests.tables import table
 
@@ -89,15 +90,7 @@ def test_every_published_growth_has_a_row():
 
 
 @pytest.mark.parametrize(
-    ("tags", "count"),
-    [
-        ('<script src="https://cdn.example/a.js"></script>', 1),
-        ('<link rel="stylesheet" href="//cdn.example/a.css">', 1),
-        ('<img src="HTTP://example.org/a.png">', 1),
-        ('<link rel="shortcut icon" href="https://example.org/a.ico">', 1),
-        ('<a href="https://example.org">x</a><script src="js/a.js"></script><img src="a.png">', 0),
-        ('<link rel="canonical" href="https://example.org">', 0),
-    ],
+    ("tags", "count"), tables.rows(__file__, "test_what_a_page_would_load_from_a_network_is_found")
 )
 def test_what_a_page_would_load_from_a_network_is_found(tags, count):
     assert len(loaded_from_elsewhere(f"<html>{tags}</html>")) == count

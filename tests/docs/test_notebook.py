@@ -5,21 +5,9 @@ from making.notebook import made, notebook_of, page_of, read_cells, run_cells
 
 from tests.docs.pages import DOCS
 from tests.support import ROOT
+from tests.tables import entry, rows
 
-SOURCE = '''"""A file."""
-# %% [markdown]
-# # Title
-#
-# Words.
-
-# %%
-import math
-x = 2
-
-# %%
-print("x is", x)
-math.sqrt(x + 2)
-'''
+SOURCE = entry(__file__, "SOURCE")
 
 
 def test_cells_share_their_names_and_show_what_they_print_and_end_with():
@@ -41,13 +29,7 @@ def test_cells_share_their_names_and_show_what_they_print_and_end_with():
     assert written[2]["outputs"][0]["text"] == ["x is 2\n", "2.0\n"]
 
 
-DRAWING = """# %%
-class Drawn:
-    def savefig(self, buffer, **settings):
-        buffer.write(b"png")
-
-Drawn()
-"""
+DRAWING = entry(__file__, "DRAWING")
 
 
 def test_a_figure_becomes_an_image():
@@ -69,17 +51,6 @@ def test_the_tutorial(monkeypatch):
     monkeypatch.chdir(ROOT)
     cells = made(DOCS / "tutorial_python.py")
     printed = "".join(cell.printed for cell in cells)
-    said = [
-        "proved - a common quadratic function: impossible\n",
-        "Repeating the signal",
-        "insertion: Mt = 0.01 kg m^2, Bt = 2.15 N m s/rad\n",
-        "proved at ",
-        "\nrefuted\n1 to 150 N m/rad: proved\n",
-        "holds: True at the rate ",
-        "holds for both modes: False\nfails in m2 at x = ",
-        "soft-tissue.cert.json holds: True\n",
-        "its content does not match its id: it was altered\n",
-    ]
-    places = [printed.index(text) for text in said]
+    places = [printed.index(text) for text in rows(__file__, "test_the_tutorial")]
     assert places == sorted(places)
     assert sum(len(cell.images) for cell in cells) == 2

@@ -1,12 +1,9 @@
 """Every session that a page shows runs, and prints what is shown; every option shown exists."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 from functools import cache
 from pathlib import Path
@@ -17,7 +14,7 @@ from typer.main import get_command
 
 from nrs_design.cli.app import make_app
 from tests.docs.pages import commands_of, pages, python_of, session_of
-from tests.support import ROOT
+from tests.support import ROOT, started
 from tests.test_readme import assert_same
 
 # The README has a test of its own, in process.
@@ -47,9 +44,8 @@ def environment(folder: Path) -> dict[str, str]:
     program.parent.mkdir()
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m nrs_design "$@"\n')
     program.chmod(0o755)
-    return os.environ | {
+    return {
         "PATH": f"{program.parent}:{os.environ['PATH']}",
-        "PYTHONPATH": str(ROOT),
         "COLUMNS": "100",
         "PYTHONWARNINGS": "default",
     }
@@ -64,14 +60,7 @@ def test_a_session_prints_what_is_shown(page: str, checkout: Path, tmp_path: Pat
     folder = tmp_path / "empty" if page in ANYWHERE else checkout
     folder.mkdir(exist_ok=True)
     for command, shown in session_of(page):
-        result = subprocess.run(
-            ["bash", "-c", command],
-            capture_output=True,
-            text=True,
-            cwd=folder,
-            check=False,
-            env=settings,
-        )
+        result = started("bash", "-c", command, cwd=folder, python=False, **settings)
         assert_same(result.stdout, shown)
         assert not re.search("^error", result.stderr, re.MULTILINE), (command, result.stderr)
     written = {path.name for path in folder.rglob("*")}

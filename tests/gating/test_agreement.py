@@ -18,33 +18,22 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_certification, run_recorded
 from nrs_design.spec import read_spec
-from tests.tables import spec_text
+from tests.support import spec_in
+from tests.tables import entry, spec_text
 
 from .conftest import gate_of
 
 pytestmark = pytest.mark.slow
 # The loop of soft-tissue-sampled, for which gains of the least cost decay at 0.977 1/s.
 BY_RATE = spec_text("by-rate")
-CASE = {
-    "OTHER": "withdrawal: {type: impedance, environment: soft, "
-    "desired_impedance_ratio: 0.5, MASSES}",
-    "MOTOR": "{nominal: 4.84e-4 rad/s/rpm, range: [4.74e-4 rad/s/rpm, 4.94e-4 rad/s/rpm]}",
-    "LAG": "{nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}",
-    "STIFFNESS": "{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}",
-    "MASSES": "Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}, Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}",
-    "DIGITS": "5",
-    "CONTACT": "losable",
-    "GOALS": "decay_rate: 2 1/s",
-}
+CASE = entry(__file__, "CASE")
 
 
 def written(folder, **changes):
     text = BY_RATE
     for key, value in (CASE | changes).items():
         text = text.replace(key, value)
-    path = folder / "by-rate.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return spec_in(folder, text, "by-rate")
 
 
 def goals_of(result):

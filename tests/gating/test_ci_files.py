@@ -4,7 +4,6 @@ import os
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from ruamel.yaml import YAML
 from typer.main import get_command
 
 from nrs_design.cli.app import make_app
-from tests.support import run
+from tests.support import run, spec_in, started
 
 from .conftest import STABLE
 
@@ -128,10 +127,8 @@ def test_the_action_installs_by_no_module_of_the_checkout(tmp_path):
     (tmp_path / "pip.py").write_text("raise SystemExit('taken over')")
     (step,) = (s for s in parse(ACTION)["runs"]["steps"] if "pip install" in s.get("run", ""))
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    environment = {**os.environ, **step["env"], "PACKAGE": "--help", "PATH": path}
-    done = subprocess.run(
-        ["bash", "-c", step["run"]], env=environment, cwd=tmp_path, capture_output=True, text=True
-    )
+    given = {**step["env"], "PACKAGE": "--help", "PATH": path}
+    done = started("bash", "-c", step["run"], cwd=tmp_path, python=False, **given)
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -140,15 +137,13 @@ def test_the_action_installs_by_no_module_of_the_checkout(tmp_path):
 def test_the_action_writes_the_summary_of_the_job(tmp_path, weaker):
     """Its lines as bash runs them; what is weaker than the base fails, and is in the summary."""
     (tmp_path / "head/specs").mkdir(parents=True)
-    spec = tmp_path / "head/specs/a.nrs.yaml"
-    spec.write_text(STABLE)
+    spec = spec_in(tmp_path, STABLE, "head/specs/a")
     run("gate", "specs", "--no-reports", cwd=tmp_path / "head", code=0)
     shutil.copytree(tmp_path / "head", tmp_path / "base")
     if weaker:
         spec.write_text(STABLE.replace("arbitrary", "{dwell_time: 1 s}"))
         run("gate", "specs", "--no-reports", cwd=tmp_path / "head")
     environment = {
-        **os.environ,
         "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
         "SPECS": "specs",
         "BASE": "../base",
@@ -157,13 +152,9 @@ def test_the_action_writes_the_summary_of_the_job(tmp_path, weaker):
     }
     lines = [step["run"] for step in parse(ACTION.read_text())["runs"]["steps"] if "run" in step]
     gate, summary = lines[1:3]
+    bash = ("bash", "-eo", "pipefail", "-c")
     codes = [
-        subprocess.run(
-            ["bash", "-eo", "pipefail", "-c", line],
-            env=environment,
-            cwd=tmp_path / "head",
-            check=False,
-        ).returncode
+        started(*bash, line, cwd=tmp_path / "head", python=False, **environment).returncode
         for line in (gate, summary)
     ]
     assert codes == [int(weaker), 0]

@@ -1,7 +1,4 @@
 import json
-import os
-import subprocess
-import sys
 
 import pytest
 
@@ -11,7 +8,7 @@ from nrs_design.gating.locked import find_missing, run_locked
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.renew import write_lock
 from nrs_design.spec import read_spec
-from tests.support import ROOT, SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE, spec_in, started
 
 from .conftest import gate_of, restated
 
@@ -92,14 +89,7 @@ def test_nothing_is_written_and_no_solver_is_loaded(project):
         "heavy = {'clarabel', 'scipy', 'control', 'matplotlib', 'cvxpy', 'jinja2'}\n"
         "print(sorted(heavy & set(sys.modules)))\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        cwd=project,
-        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = started("-c", program, cwd=project, PYTHONDONTWRITEBYTECODE="1")
     assert done.returncode == 0, done.stderr
     assert done.stdout.rstrip().endswith("[]")
     assert {p: p.stat().st_mtime_ns for p in project.rglob("*")} == before
@@ -112,8 +102,7 @@ RUN = """scenarios:
 
 
 def asked(tmp_path, text, locked=(), status="missed"):
-    path = tmp_path / "s.nrs.yaml"
-    path.write_text(text)
+    path = spec_in(tmp_path, text, "s")
     known = {locked: status} if locked else {}
     return [f"{rule} {subject}" for rule, subject in find_missing(read_spec(path).spec, known)]
 
@@ -135,10 +124,7 @@ def test_goals_of_the_spec_and_limits_of_runs_are_asked(tmp_path):
     controllers = [
         f"{rule} {name}"
         for name in ("insertion", "withdrawal")
-        for rule, name in (
-            ("NRS103", name),
-            ("NRS106", f"{name}: max_sensitivity_peak"),
-        )
+        for rule, name in (("NRS103", name), ("NRS106", f"{name}: max_sensitivity_peak"))
     ]
     limits = ["NRS109 hit: torque", "NRS109 hit: velocity"]
     assert asked(tmp_path, text) == [*controllers, *limits]

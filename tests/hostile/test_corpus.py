@@ -8,24 +8,9 @@ from nrs_design.gating.lock import Lock, dump_lock
 from tests.hostile.corpus import CERTIFICATES, LOCKS, NAMES, RECORDS, SPECS, write
 from tests.hostile.running import check
 from tests.support import COMMUTING
+from tests.tables import rows
 
-# A search takes what it is given, here less than by default.
-SEARCH = ("--budget", "2", "--memory", "0.1")
-SPEC_COMMANDS = (
-    ("check", "--json"),
-    ("certify-switching", *SEARCH),
-    ("certify-switching", *SEARCH, "--margin"),
-    ("optimize",),
-    ("tune",),
-    ("report", *SEARCH),
-    ("export",),
-    ("robot", "check"),
-    ("robot", "kinematics"),
-    ("gate", *SEARCH),
-    ("gate", *SEARCH, "--format", "github", "--no-reports"),
-    ("gate", *SEARCH, "--format", "junit", "--no-reports"),
-    ("gate", "--locked"),
-)
+SPEC_COMMANDS = [tuple(line.split()) for line in rows(__file__, "SPEC_COMMANDS")]
 
 # What takes seconds to read and is refused then, by one reader for all commands: one that prints
 # the fault, one that lists it, and one that goes on to the next file show what there is to see, and

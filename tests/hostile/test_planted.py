@@ -1,16 +1,14 @@
 """No command executes a module of the working folder, whose every module is a stranger's."""
 
 import ast
-import os
 import shutil
-import subprocess
 import sys
 from importlib.metadata import packages_distributions
 
 import pytest
 
 from tests.package import FILES, nodes_of
-from tests.support import COMMUTING, ROOT, SOFT_TISSUE
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, started
 
 EXAMPLES = ROOT / "docs" / "examples"
 NAMES = (sys.stdlib_module_names | packages_distributions().keys()) - {"nrs_design"}
@@ -42,10 +40,7 @@ def test_one_module_starts_processes():
 
 @pytest.mark.parametrize(
     "command",
-    [
-        COMMANDS[0],
-        *(pytest.param(c, marks=pytest.mark.slow) for c in COMMANDS[1:]),
-    ],
+    [COMMANDS[0], *(pytest.param(c, marks=pytest.mark.slow) for c in COMMANDS[1:])],
     ids=lambda command: command[0],
 )
 def test_nothing_that_was_planted_is_executed(tmp_path, command):
@@ -57,8 +52,7 @@ def test_nothing_that_was_planted_is_executed(tmp_path, command):
     for name in "ab":
         shutil.copy(COMMUTING, folder / f"{name}.nrs.yaml")
     # As the installed program starts, which has its own folder in front.
-    started = [sys.executable, "-P", "-m", "nrs_design", *map(str, command)]
-    env = os.environ | {"EXECUTED": str(executed), "HOME": str(tmp_path)}
-    done = subprocess.run(started, cwd=folder, env=env, capture_output=True, text=True)
+    given = {"EXECUTED": str(executed), "HOME": str(tmp_path)}
+    done = started("-P", "-m", "nrs_design", *command, cwd=folder, **given)
     assert 0 <= done.returncode < 4, done.stderr
     assert not executed.exists(), executed.read_text()

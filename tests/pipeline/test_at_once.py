@@ -9,7 +9,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.proof.graphs import shape_of
 from tests.search.support import TEXT
-from tests.support import ROOT
+from tests.support import ROOT, spec_in
 
 TURNS = (
     TEXT.replace("GAIN, time_constant: TAU", "4.8417e-4 rad/s/rpm, time_constant: 0.0351 s")
@@ -24,8 +24,7 @@ TURNS = (
 @pytest.mark.slow
 def test_beside_two_periods_no_bound_is_stated(tmp_path):
     """Decay is proved for both periods; that no bound is looked for is said."""
-    path = tmp_path / "turns.nrs.yaml"
-    path.write_text(TURNS)
+    path = spec_in(tmp_path, TURNS, "turns")
     result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
     assert result.certification.verdict is Verdict.PROVED
     (statement,) = result.certification.statements

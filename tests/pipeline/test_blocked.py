@@ -11,7 +11,7 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked, li
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, spec_in
 from tests.tables import spec_text
 
 EXACT = "stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}\n    lever_arm: 0.24 m"
@@ -41,15 +41,7 @@ def hand() -> str:
 # The same, of one age that is too much; with what disturbs besides.
 LATE = late().replace("[0, 5]", "4") + "disturbances: {command: 8 deg/s}\n"
 # Geromel and Colaneri 2006: proved from 2.7508 s on, and up to 2.7077 s a signal grows.
-PAIR = """\
-kind: switched-system
-name: pair
-time: continuous
-modes:
-  - {name: stiff, A: [[0, 1], [-10, -1]]}
-  - {name: soft, A: [[0, 1], [-0.1, -0.5]]}
-switching: {dwell_time: 2.73 s}
-"""
+PAIR = spec_text("stiff-and-soft")
 HARD = spec_text("hard")
 # Zelentsovsky 1994: stable for k in [0, K] iff K < 6.98513.
 OSCILLATOR = spec_text("oscillator")
@@ -57,8 +49,7 @@ OSCILLATOR = spec_text("oscillator")
 
 def blocked(tmp_path: Path, text: str, budget: float) -> Blocked:
     """Find what blocks a text that is not decided in a budget; its work is less than half."""
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = spec_in(tmp_path, text, "a")
     limits = Limits(optimize_rate=False, budget=budget)
     result = run_certification(read_spec(path), limits=limits)
     assert result.certification.verdict is Verdict.INCONCLUSIVE
@@ -70,8 +61,7 @@ def blocked(tmp_path: Path, text: str, budget: float) -> Blocked:
 
 
 def verdict(tmp_path: Path, text: str, budget: float) -> Verdict:
-    path = tmp_path / "b.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = spec_in(tmp_path, text, "b")
     limits = Limits(optimize_rate=False, budget=budget)
     return run_certification(read_spec(path), limits=limits).certification.verdict
 
@@ -155,8 +145,7 @@ def test_a_dwell_time(tmp_path):
     assert line.write == f"dwell_time: {line.proved}"
     assert texts(found)[1:] == ["without modes[0] (stiff)", "without modes[1] (soft)"]
     # What is proved is the file with the line that is advised.
-    path = tmp_path / "c.nrs.yaml"
-    path.write_text(PAIR.replace("2.73 s", line.proved), encoding="utf-8")
+    path = spec_in(tmp_path, PAIR.replace("2.73 s", line.proved), "c")
     assert read_spec(path).sha256 == found.proved[0].sha256
 
 

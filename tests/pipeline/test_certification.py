@@ -22,6 +22,7 @@ from tests.support import (
     ROOT,
     SOFT_TISSUE,
     holds,
+    spec_in,
     write_spec,
 )
 
@@ -114,8 +115,7 @@ def test_the_design_keeps_the_optimum_it_found():
 
 def test_gains_that_are_given_have_no_optimum_to_keep(tmp_path):
     text = re.sub("Mt: {.*}", "Mt: 0.01 kg*m^2", SOFT_TISSUE.read_text())
-    path = tmp_path / "fixed.nrs.yaml"
-    path.write_text(re.sub("Bt: {.*}", "Bt: 2.5 N*m*s/rad", text))
+    path = spec_in(tmp_path, re.sub("Bt: {.*}", "Bt: 2.5 N*m*s/rad", text), "fixed")
     designed = run_design(read_spec(path))
     assert [controller.optimum for controller in designed.design.controllers] == [None, None]
     for item in run_analysis(designed).impedance:

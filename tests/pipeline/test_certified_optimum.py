@@ -19,6 +19,8 @@ from nrs_design.pipeline.certified_optimum import run_certified_optimum
 from nrs_design.pipeline.design import design_at_least_cost, run_analysis
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import read_spec
+from tests.support import spec_in
+from tests.tables import rows
 
 from .free import FORCE, PD, SAMPLED, freed
 
@@ -39,9 +41,7 @@ def designed_of(folder, goals, **changes):
         }[old]
         assert before in text
         text = text.replace(before, f"{before.split(':')[0]}: {new}")
-    path = folder / "a.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    designed = design_at_least_cost(read_spec(path))
+    designed = design_at_least_cost(read_spec(spec_in(folder, text, "a")))
     return designed, run_analysis(designed)
 
 
@@ -53,17 +53,8 @@ def dampings(found):
     return [float(found.gains[name, "Bt"].split()[0]) for name in ("insertion", "withdrawal")]
 
 
-CASES = [
-    ("decay_rate: 2 1/s", {}, (2.149, 1.119), 0.2524),
-    ("decay_rate: 0.01 1/s", {"delay": "[0, 2]"}, (2.149, 1.043), 0.23749),
-    ("decay_rate: 2 1/s", {"delay": "[0, 2]"}, (2.149, 1.198), 0.2728),
-    ("decay_rate: 2 1/s", {"delay": "[0, 2]", "mass": "0 kg*m^2"}, (2.151, 1.063), 0.23437),
-    ("decay_rate: 4 1/s", {"delay": "[0, 2]", "mass": "0 kg*m^2"}, (2.147, 1.085), 0.2382),
-]
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(("goals", "changes", "Bt", "cost"), CASES)
+@pytest.mark.parametrize(("goals", "changes", "Bt", "cost"), rows(__file__, "test_known_optima"))
 def test_known_optima(tmp_path, goals, changes, Bt, cost):
     found = optimum(tmp_path, goals, digits="5", **changes)
     assert dampings(found) == pytest.approx(Bt, abs=0.005)

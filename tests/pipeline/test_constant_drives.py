@@ -8,16 +8,14 @@ from nrs_design.errors import AssemblyError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import parse_spec, read_spec
-from tests.support import words_of
+from tests.support import spec_in, words_of
 from tests.tables import spec_text
 
 TORQUES, LATE = spec_text("constant-inertia"), spec_text("constant-latency")
 
 
 def read(tmp_path, text):
-    path = tmp_path / "one.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    return read_spec(path)
+    return read_spec(spec_in(tmp_path, text, "one"))
 
 
 def test_constants_of_two_contacts_of_one_drive_are_refused(tmp_path):

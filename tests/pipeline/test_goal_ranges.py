@@ -5,6 +5,7 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import declaring, run_analysis, wanted_age
 from nrs_design.pipeline.free_gains import with_problems
+from tests.tables import rows
 
 from .free import freed
 
@@ -15,9 +16,7 @@ def wanting(delay):
     return freed(KP, ("contact: losable", f"contact: losable\ngoals: {{delay: {delay}}}"))
 
 
-@pytest.mark.parametrize(
-    ("delay", "age"), [("2 ms", None), ("2.1 ms", 2), ("4 ms", 2), ("20 ms", 10)]
-)
+@pytest.mark.parametrize(("delay", "age"), rows(__file__, "test_ages_are_whole_samples"))
 def test_ages_are_whole_samples(delay, age):
     assert wanted_age(wanting(delay)) == age
 

@@ -14,25 +14,11 @@ from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import refuted_at_once
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, SOFT_TISSUE
+from tests.support import COMMUTING, SOFT_TISSUE, spec_in
+from tests.tables import spec_text
 
-LINE = """\
-kind: switched-system
-name: line
-time: continuous
-parameters:
-  p: {nominal: 1, range: [0, 2]}
-modes:
-  - {name: line, A: [[-3 + p]]}
-switching: arbitrary
-"""
-SAMPLED = """\
-environments: {soft: {model: elastic, stiffness: 43.0356 N*m/rad}}
-controllers:
-  insertion: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2 N*m*s/rad}
-switching: arbitrary
-sampling: {period: 1 ms, delay: [0, 1]}
-"""
+LINE = spec_text("line")
+SAMPLED = spec_text("one-late-controller")
 EXAMPLE = Path("docs/examples/everything-at-once.nrs.yaml")
 
 
@@ -54,17 +40,15 @@ def test_a_delay_is_refuted_beyond_what_a_spec_can_declare():
 @pytest.mark.parametrize(("delay", "expected"), [(0, False), (3, True)])
 def test_two_periods_are_refuted_by_a_round(tmp_path, delay, expected):
     """No mode of theirs is stable by itself, as the command is held: rounds decide."""
-    path = tmp_path / "round.nrs.yaml"
     sampling = "sampling: {period: 2 ms, outer_period: 10 ms, delay: 0}\n"
-    path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + sampling, encoding="utf-8")
+    path = spec_in(tmp_path, SOFT_TISSUE.read_text(encoding="utf-8") + sampling, "round")
     loaded = read_spec(path)
     assert (refuted_at_once(late(loaded, run_design(loaded), delay)) is not None) is expected
 
 
 def test_what_is_known_is_said_while_the_search_goes_on(tmp_path):
     """``x' = (p - 3) x`` with p within 1 of 1: proved below a scale of 2, refuted from there on."""
-    path = tmp_path / "line.nrs.yaml"
-    path.write_text(LINE, encoding="utf-8")
+    path = spec_in(tmp_path, LINE, "line")
     told: list[str] = []
     result = run_certification(read_spec(path))
     found = run_proof_margins(result, Limits(), told.append, margin=True, shortest_dwell=False).box
@@ -88,9 +72,8 @@ def test_what_a_margin_would_be_about_is_missing():
 
 def test_a_delay_that_makes_no_loop_ends_the_search_and_says_why(tmp_path, monkeypatch):
     """As a period does: what is proved below it is told."""
-    path = tmp_path / "late.nrs.yaml"
     text = SOFT_TISSUE.read_text(encoding="utf-8")
-    path.write_text(text[: text.index("environments:")] + SAMPLED, encoding="utf-8")
+    path = spec_in(tmp_path, text[: text.index("environments:")] + SAMPLED, "late")
     result = run_certification(read_spec(path), limits=Limits(max_degree=2, optimize_rate=False))
     assert result.certification.verdict is Verdict.PROVED
 

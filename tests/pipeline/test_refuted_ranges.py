@@ -22,33 +22,15 @@ from nrs_design.proof.evidence.growing_sequence import UNATTAINED, staying
 from nrs_design.search.certification import Limits
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from tests.proof.graphs import common_quadratic
-from tests.support import ROOT, matrix
+from tests.support import ROOT, matrix, replaced
+from tests.tables import spec_text
 
 
 def torques(J, k, law, latency):
     """A joint between two inertias, at a controller with these stiffness and damping."""
-    return f"""\
-kind: interaction-design
-name: torques
-axis: prismatic
-torque_interface:
-  inertia: {{nominal: {J[0]} kg, range: [{J[0]} kg, {J[1]} kg], varies: false}}
-  friction: 1 N*s/m
-limits: {{velocity: 100 mm/s, torque: 20 N, bandwidth: 2 Hz}}
-environments:
-  table:
-    model: elastic
-    stiffness: {{nominal: {k[0]} N/m, range: [{k[0]} N/m, {k[1]} N/m], varies: false}}
-controllers:
-  c:
-    type: torque-impedance
-    environment: table
-    stiffness: {law[0]} N/m
-    damping: {law[1]} N*s/m
-switching: arbitrary
-sampling: {{period: 2 ms, delay: 0, latency: {latency}}}
-contact: kept
-"""
+    names = ("LIGHT", "HEAVY", "SOFT", "STIFF", "SPRING", "DAMPER", "LATENCY")
+    said = map(str, (*J, *k, *law, latency))
+    return replaced(spec_text("torques"), *zip(names, said, strict=True))
 
 
 # The largest spectral radius of an admissible loop is 0.98951, by a grid of 40 x 60 values.

@@ -34,19 +34,7 @@ def test_the_unit_above_a_column():
     assert (first.unit, second.unit) == ("N/m", "")
 
 
-@pytest.mark.parametrize(
-    ("said", "message"),
-    [
-        (["stiffness=1 N/m"], "did you mean environments.soft.stiffness"),
-        (["sampling.delay=1"], "write one of kind, name"),
-        (["limits.torqe=1 N*m"], "did you mean limits.torque"),
-        (["environments.soft.zzzzzzzzzzzzzzzzzzzz=1 N*m"], "write one of environments.soft"),
-        ([], "one to 3 fields, not 0"),
-        ([LEVER] * 4, "one to 3 fields, not 4"),
-        (["limits.torque=1..1001/5001 N*m", STIFFNESS], "5001 x 4 points"),
-        (["limits.torque"], "sets nothing"),
-    ],
-)
+@pytest.mark.parametrize(("said", "message"), rows(__file__, "test_what_makes_no_grid"))
 def test_what_makes_no_grid(said, message):
     with pytest.raises(SpecError, match=message):
         read_grid(SOFT_TISSUE, said)

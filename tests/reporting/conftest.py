@@ -1,7 +1,5 @@
 """Reports of every verdict and kind, made once for a session."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -14,92 +12,11 @@ from nrs_design.reporting import Report, build_report, render_html
 from nrs_design.search.certification import Limits
 from nrs_design.spec import LoadedSpec, read_spec
 from tests.support import ROOT, SOFT_TISSUE
+from tests.tables import spec_text, table
 
 HOSTILE = """<script>alert(1)</script> & "it's" {{ 7*7 }} $x_1$ <b>bold</b>"""
 
-# Geromel and Colaneri (2006): proved from 2.751 s on, unstable up to 2.707 s.
-_DWELL = """\
-time: continuous
-modes:
-  - {{name: a, A: [[0, 1], [-10, -1]]}}
-  - {{name: b, A: [[0, 1], ["-1/10", "-1/2"]]}}
-switching: {{dwell_time: {} s}}
-"""
-# Dayawansa and Martin (1999): no quadratic function above 5.83, unstable from 11.27 on.
-_PAIR = """\
-time: continuous
-modes:
-  - {{name: a, A: [[-1, -1], [1, -1]]}}
-  - {{name: b, A: [[-1, -{0}], ["1/{0}", -1]]}}
-switching: arbitrary
-"""
-KINDS = {
-    "inconclusive": _DWELL.format("2.72"),
-    # Nearly the same stays as in a signal that grows, and a mode that is unstable by itself.
-    "inconclusive-leaving": """\
-time: continuous
-modes:
-  - {name: a, A: [[1]]}
-  - {name: b, A: [[-1]]}
-switching: {dwell_time: {b: 1 s}, longest_dwell_time: {a: 1 s}}
-""",
-    "dwell": _DWELL.format("2.76"),
-    "dwell-refuted": _DWELL.format("2.7"),
-    "polynomial": _PAIR.format(6),
-    "period": _PAIR.format(12),
-    # Two shears, whose mean has the eigenvalue 4.
-    "mixture": """\
-time: continuous
-modes:
-  - {name: a, A: [[-1, 10], [0, -1]]}
-  - {name: b, A: [[-1, 0], [10, -1]]}
-switching: arbitrary
-""",
-    "resets": """\
-time: continuous
-modes:
-  - {name: full, A: [[0, 1], [-3, -1]]}
-  - {name: slow, A: [[-1]]}
-resets:
-  - {from: full, to: slow, map: [["1/2", 0]]}
-  - {from: slow, to: full, map: [["1/2"], [0]]}
-switching: arbitrary
-""",
-    "unequal": """\
-time: continuous
-modes:
-  - {name: slow, A: [[-1]]}
-  - {name: full, A: [[0, 1], [-3, "0.1"]]}
-resets:
-  - {from: full, to: slow, map: [["1/2", 0]]}
-  - {from: slow, to: full, map: [["1/2"], [0]]}
-switching: arbitrary
-""",
-    # An oscillator whose stiffness is unknown, beyond the 6.98 up to which it may change.
-    "parameter": """\
-time: continuous
-parameters:
-  k: {nominal: 5, range: [0, 30], varies: false}
-modes:
-  - {name: m, A: [[0, 1], [-2 - k, -1]]}
-switching: arbitrary
-""",
-    "blocks": """\
-time: continuous
-modes:
-  - {name: a, A: [[-1, -1, 3, 0], [1, -1, 0, 1], [0, 0, -2, 1], [0, 0, 0, -1]]}
-  - {name: b, A: [[-1, -6, 0, 2], ["1/6", -1, 1, 0], [0, 0, -1, 0], [0, 0, 0, -3]]}
-switching: arbitrary
-""",
-    # Above the golden ratio's 0.618 the product of the two grows.
-    "word": """\
-time: discrete
-modes:
-  - {name: a, A: [["0.7", "0.7"], [0, "0.7"]]}
-  - {name: b, A: [["0.7", 0], ["0.7", "0.7"]]}
-switching: arbitrary
-""",
-}
+KINDS = table(Path(__file__).with_name("kinds.yaml"))
 _TITLE = HOSTILE.replace("'", "''")
 DISCRETE = f"""\
 kind: switched-system
@@ -112,15 +29,7 @@ modes:
 switching: arbitrary
 """
 # A rotation by 90 degrees: exactly on the unit circle.
-MARGINAL = """\
-kind: switched-system
-name: rotation
-time: discrete
-modes:
-  - {name: a, A: [["0.5", 0], [0, "0.5"]]}
-  - {name: turn, A: [[0, -1], [1, 0]]}
-switching: arbitrary
-"""
+MARGINAL = spec_text("rotation")
 # Left to the slow tests; of each, the default session has a case that is nearly the same.
 ALIKE = {"resets", "dwell-refuted"}
 

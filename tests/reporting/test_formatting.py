@@ -1,6 +1,3 @@
-from __future__ import annotations
-
-import math
 from math import pi
 
 import pytest
@@ -16,18 +13,10 @@ from nrs_design.reporting.formatting import (
 )
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reporting.worst_case import scale_of
+from tests.tables import rows
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (5523.4, "5523"),
-        (117359.4, "117400"),
-        (0.01, "0.01"),
-        (1e-7, "1e-07"),
-        (math.inf, "unlimited"),
-    ],
-)
+@pytest.mark.parametrize(("value", "text"), rows(__file__, "test_number"))
 def test_number(value, text):
     assert number(value) == text
 
@@ -47,16 +36,7 @@ def test_lists():
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0.0, "0"),
-        (0.3, "0.3"),
-        (0.1, "0.1"),
-        (0.30001, "0.3001"),
-        (0.99999, "1"),
-        (3.2e-10, "3.2e-10"),
-        (1234567.0, "1.235e+06"),
-    ],
+    ("value", "text"), rows(__file__, "test_a_torque_above_its_limit_is_never_shown_at_it")
 )
 def test_a_torque_above_its_limit_is_never_shown_at_it(value, text):
     assert four_digits_up(value) == text
@@ -67,14 +47,7 @@ def test_drawable_has_letters_of_the_font_only():
 
 
 @pytest.mark.parametrize(
-    ("text", "width", "lines"),
-    [
-        ("short", 20, ["short"]),
-        ("insertion-slow/silicone/k-min", 20, ["insertion-slow/", "silicone/k-min"]),
-        ("x" * 30, 12, ["x" * 12, "x" * 12, "x" * 6]),
-        ("one two three", 8, ["one two", "three"]),
-        ("", 8, [""]),
-    ],
+    ("text", "width", "lines"), rows(__file__, "test_wrapped_keeps_every_letter")
 )
 def test_wrapped_keeps_every_letter(text, width, lines):
     assert wrapped_label(text, width).split("\n") == lines

@@ -9,12 +9,11 @@ from nrs_design.reporting.remedies import next_steps
 from nrs_design.search.certification import Limits
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, run
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, run, spec_in
 
 
 def steps_of(tmp_path, case):
-    path = tmp_path / f"{case}.nrs.yaml"
-    path.write_text(f"kind: switched-system\nname: {case}\n{KINDS[case]}")
+    path = spec_in(tmp_path, f"kind: switched-system\nname: {case}\n{KINDS[case]}", f"{case}")
     return next_steps(run_certification(read_spec(path), limits=Limits(max_degree=4)))
 
 
@@ -37,8 +36,7 @@ def test_a_dwell_time_is_searched_where_it_may_help(tmp_path, case):
 
 
 def test_what_was_just_searched_is_not_advised(tmp_path):
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(f"kind: switched-system\nname: a\n{KINDS['dwell-refuted']}")
+    path = spec_in(tmp_path, f"kind: switched-system\nname: a\n{KINDS['dwell-refuted']}", "a")
     wide = ROOT / "docs/examples/wide-range.nrs.yaml"
     for spec, asked in ((path, "shortest_dwell"), (wide, "margin")):
         result, option = run_certification(read_spec(spec)), f"--{asked.replace('_', '-')}"

@@ -9,6 +9,7 @@ from nrs_design.reporting.document import Linked, Table
 from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, SOFT_TISSUE
+from tests.tables import rows
 
 
 def lines_of(report, section, column):
@@ -22,16 +23,10 @@ def lines_of(report, section, column):
 
 
 @pytest.mark.parametrize(
-    ("section", "column", "expected"),
-    [
-        ("Modes", 0, {"insertion:", "withdrawal:"}),
-        ("Modes", 2, {"soft:"}),
-        ("Design goals", 3, {"insertion:", "withdrawal:"}),
-        ("Design goals", 4, {"soft:"}),
-    ],
+    ("section", "column", "expected"), rows(__file__, "test_numbers_lead_to_their_lines")
 )
 def test_numbers_lead_to_their_lines(report, section, column, expected):
-    assert lines_of(report("proved"), section, column) == expected
+    assert lines_of(report("proved"), section, column) == set(expected)
 
 
 def test_the_motion_loop_leads_to_what_is_asked_for(report):

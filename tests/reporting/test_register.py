@@ -9,6 +9,7 @@ from nrs_design.reporting.sections.tail import register_of
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import recorded
 from tests.support import SOFT_TISSUE
+from tests.tables import rows
 
 AXES = "The axes of the robot do not act on each other."
 
@@ -24,15 +25,11 @@ def test_an_assumption_keeps_its_sentence_and_order():
 
 @pytest.mark.parametrize(
     ("data", "doubts", "standing"),
-    [
-        ("measured", "", Standing.TESTED),
-        ("synthetic", "", Standing.OPEN),
-        ("measured", "    doubts: [the record is short]\n", Standing.OPEN),
-    ],
+    rows(__file__, "test_only_measured_records_without_doubt_count_as_a_test"),
 )
 def test_only_measured_records_without_doubt_count_as_a_test(tmp_path, data, doubts, standing):
     spec = recorded(tmp_path, data, doubts).spec
     statements = run_certification(read_spec(SOFT_TISSUE)).certification.system.assumptions
     found = {entry.kind.id: entry.standing for entry in register_of(statements, spec)}
-    assert found["tissue"] is standing
+    assert found["tissue"] is Standing[standing]
     assert found["nominal-motor"] is Standing.OPEN

@@ -13,7 +13,8 @@ from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS, ROOT, cases
-from tests.support import COMMUTING, GIVEN, SOFT_TISSUE, family, replaced, write_spec
+from tests.support import COMMUTING, GIVEN, SOFT_TISSUE, family, replaced, spec_in, write_spec
+from tests.tables import entry
 
 # Figures by their names, in order.
 FIGURES = dict.fromkeys(KINDS, "eigenvalues run") | {
@@ -73,8 +74,7 @@ def test_every_case_has_its_figures_in_order_with_a_unit_at_every_axis(report, c
 @pytest.mark.slow
 def test_worst_values_stand_beside_the_goals(tmp_path):
     goals = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching:"
-    path = tmp_path / "goals.nrs.yaml"
-    path.write_text(replaced(SOFT_TISSUE.read_text(), *GIVEN, ("switching:", goals)))
+    path = spec_in(tmp_path, replaced(SOFT_TISSUE.read_text(), *GIVEN, ("switching:", goals)))
     result = run_certification(read_spec(path), method=Method.LMI)
     found = build_report(result, run_analysis(result.designed))
     table = table_of(found, "Design goals")
@@ -135,8 +135,7 @@ def test_inconclusive_report_says_so_plainly(report):
 
 
 @pytest.mark.parametrize(
-    "case",
-    cases(("proved", "force", "discrete", "polynomial", "dwell", "parameter")),
+    "case", cases(("proved", "force", "discrete", "polynomial", "dwell", "parameter"))
 )
 def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
@@ -152,9 +151,7 @@ def test_given_motion_loop_is_named(tmp_path):
         "  transfer_function:\n    numerator: [0.99, 56.82]\n"
         "    denominator: [0.0351, 1.99, 56.82]\n",
     )
-    path = tmp_path / "printed.nrs.yaml"
-    path.write_text(text)
-    loaded = read_spec(path)
+    loaded = read_spec(spec_in(tmp_path, text, "printed"))
     result = run_certification(loaded)
     text = words(build_report(result, run_analysis(result.designed)))
     assert "G(s) = (0.99 s + 56.82) / (0.0351 s^2 + 1.99 s + 56.82)" in text
@@ -167,9 +164,7 @@ def test_unstable_force_loop_is_reported_without_margins(tmp_path):
         "settling_time: 0.1404 s\n  derivative_gain: 2060 rpm*s/rad\n  zero: 56.9706 1/s\n",
         "settling_time: 0.1404 s\n  transfer_function: {numerator: [1], denominator: [1, 1, -1]}\n",
     )
-    path = tmp_path / "unstable.nrs.yaml"
-    path.write_text(text)
-    loaded = read_spec(path)
+    loaded = read_spec(spec_in(tmp_path, text, "unstable"))
     result = run_certification(loaded)
     with pytest.raises(DesignError):
         run_analysis(result.designed)
@@ -186,63 +181,7 @@ def test_many_modes_are_shortened(tmp_path):
     assert "The 40 modes, the 24 slowest of them" in words(many)
 
 
-SAID = {
-    # Case: facts of the head, and what the box must say.
-    "polynomial": (
-        ["Switching: arbitrary", "Common quadratic function: impossible"],
-        [
-            "the proof does not need one",
-            "whatever switches happen",
-            "every form is positive definite and every inequality",
-        ],
-    ),
-    "proved": (
-        ["No proof can exceed: "],
-        ["Every corner of the declared parameter ranges is a mode", "single-precision numbers"],
-    ),
-    "discrete": (["No proof can go below: "], ["shrinks at least by the factor rho in every"]),
-    "dwell": (
-        ["Switching: dwell time 2.76 s", "up to a constant factor"],
-        [
-            "The dwell time of 2.76 s is part of the claim",
-            "Switching earlier than 2.76 s after the last switch.",
-            "exponentials over the dwell time are enclosed rigorously",
-        ],
-    ),
-    "resets": (
-        ["the state is reset at some switches", "2 modes of at most 2 states"],
-        ["The resets are part of the claim", "other than the declared resets"],
-    ),
-    "parameter": (
-        ["k in its range: unknown but constant"],
-        ["must be constant: one value", "A constant parameter that changes while the system moves"],
-    ),
-    "blocks": (
-        ["not attained, up to a constant factor"],
-        ["at any rate slower than that of the slowest block", "the proof does not need one"],
-    ),
-    "period": (
-        ["Switching: arbitrary"],
-        [
-            "It is not said that the robot will do this",
-            "no guarantee is possible for all the signals that the spec allows",
-            "a longer dwell time, fewer transitions or narrower ranges",
-        ],
-    ),
-    "dwell-refuted": (
-        ["Switching: dwell time 2.7 s"],
-        ["no stability of any kind can be guaranteed under the declared switching"],
-    ),
-    "mixture": (
-        ["Switching: arbitrary"],
-        ["so would be every average of them", "Nothing is said about slower switching"],
-    ),
-    "refuted": (["Switching: arbitrary"], ["exponential stability under arbitrary switching is"]),
-    "inconclusive": (
-        ["Settled by: nothing"],
-        ["No positive definite Q", "a function of another kind may exist"],
-    ),
-}
+SAID = entry(__file__, "SAID")
 
 
 @pytest.mark.parametrize("case", cases(SAID))
@@ -283,8 +222,7 @@ def test_obstruction_weights_sum_to_one(report):
 
 
 def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
-    path = tmp_path / "c.nrs.yaml"
-    path.write_text(COMMUTING.read_text().replace("arbitrary", "{dwell_time: 1 s}"))
+    path = spec_in(tmp_path, COMMUTING.read_text().replace("arbitrary", "{dwell_time: 1 s}"), "c")
     text = words(build_report(run_certification(read_spec(path))))
     assert "The proof does not need the declared rules of switching" in text
     assert "The run switches freely, which is more than the spec allows." in text

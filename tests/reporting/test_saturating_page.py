@@ -1,7 +1,5 @@
 """The page of a spec whose signals saturate: what is said of each of the two loops."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -18,20 +18,11 @@ from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed
 from tests.reporting.conftest import cases, recorded
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
-    ("case", "said"),
-    [
-        ("proved", "under any switching among 4 modes, contact may be lost"),
-        ("proved", "for all values in the declared ranges"),
-        ("dwell", "under the declared rules of switching"),
-        ("dwell", "up to one constant factor"),
-        ("parameter", "at constant parameters"),
-        ("discrete", "per step"),
-        ("refuted", ": no guarantee of stability is possible."),
-        ("inconclusive", "this report makes no statement about stability"),
-    ],
+    ("case", "said"), rows(__file__, "test_the_first_sentence_says_what_was_shown")
 )
 def test_the_first_sentence_says_what_was_shown(report, case, said):
     assert said in report(case).summary[0]
@@ -118,22 +109,7 @@ def test_lights_of_a_design(report):
 
 
 @pytest.mark.parametrize(
-    ("goals", "state", "said"),
-    [
-        ("decay_rate: 0.5 1/s", "good", "proved: decay_rate"),
-        ("decay_rate: 300 1/s", "doubtful", "NOT proved: decay_rate"),
-        ("decay_rate: 0.5 1/s, max_sensitivity_peak: 50", "good", "all 2 met; proved: decay_rate"),
-        (
-            "decay_rate: 300 1/s, max_sensitivity_peak: 50",
-            "doubtful",
-            "all 2 met; NOT proved: decay_rate",
-        ),
-        (
-            "decay_rate: 0.5 1/s, max_sensitivity_peak: 1.01",
-            "bad",
-            "2 of 2 missed (floating point); proved: decay_rate",
-        ),
-    ],
+    ("goals", "state", "said"), rows(__file__, "test_the_light_of_goals_follows_from_all_of_them")
 )
 def test_the_light_of_goals_follows_from_all_of_them(soft_tissue, tmp_path, goals, state, said):
     """What is proved decides the goals of the certificate here as it does in the gate."""
@@ -168,15 +144,7 @@ def test_goals_of_margins_that_do_not_exist_are_not_met(soft_tissue, tmp_path):
     assert said == "not computed: a nominal loop is unstable; proved: decay_rate"
 
 
-@pytest.mark.parametrize(
-    ("data", "more", "state"),
-    [
-        ("measured", "", "good"),
-        ("synthetic", "", "doubtful"),
-        ("measured", "    doubts: [short]\n", "bad"),
-        ("measured", "    doubts: [short]\n    accept_doubt: a pilot\n", "doubtful"),
-    ],
-)
+@pytest.mark.parametrize(("data", "more", "state"), rows(__file__, "test_the_light_of_data"))
 def test_the_light_of_data(tmp_path, data, more, state):
     lights = lights_of(run_certification(recorded(tmp_path, data, more)), None)
     assert [str(light.state) for light in lights if light.name == "Data"] == [state]

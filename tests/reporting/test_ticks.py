@@ -2,21 +2,11 @@ import numpy as np
 import pytest
 
 from nrs_design.reporting.style import in_full, new_axes, styled
+from tests.tables import rows
 
 
 @pytest.mark.parametrize(
-    ("value", "step", "text"),
-    [
-        (0.0, 1.0, "0"),
-        (1e-18, 0.1, "0"),
-        (2.5, 0.5, "2.5"),
-        (-20.0, 10.0, "−20"),
-        (1000.0002, 0.0001, "1000.0002"),
-        (2e7, 1e7, "2·10⁷"),
-        (-1e-9, 1e-9, "−10⁻⁹"),
-        (1.00001e8, 1e3, "1.00001·10⁸"),
-        (0.00025, 0.00005, "0.00025"),
-    ],
+    ("value", "step", "text"), rows(__file__, "test_ticks_are_written_in_full")
 )
 def test_ticks_are_written_in_full(value, step, text):
     assert in_full(value, step) == text

@@ -7,20 +7,10 @@ from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.sampling import SamplingSpec
+from tests.tables import spec_text
 
 # Motor, motion loop and limits of thesis 4.1, 4.3 and 6.3.1; gains of 6.3.2.1.
-ROBOT = """\
-kind: interaction-design
-name: small
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop:
-  damping_ratio: 0.707
-  settling_time: 0.1404 s
-  derivative_gain: 2060 rpm*s/rad
-  zero: 56.9706 1/s
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-switching: arbitrary
-"""
+ROBOT = spec_text("small-robot")
 SOFT = "{model: elastic, stiffness: 43 N*m/rad}"
 INSERTION = "{type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}"
 WITHDRAWAL = "{type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 1.04 N*m*s/rad}"

@@ -17,6 +17,7 @@ from nrs_design.simulation.scenario import Control, Errors, Profile
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.sampling import DisturbancesSpec
 from tests.simulation.interactions import text_of
+from tests.support import spec_in
 
 LAWS = {
     "insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}",
@@ -31,8 +32,7 @@ BOUNDED = "contact: losable\ndisturbances: {command: 8 deg/s}\n"
 
 @pytest.fixture(scope="module")
 def certified(tmp_path_factory):
-    path = tmp_path_factory.mktemp("spec") / "small.nrs.yaml"
-    path.write_text(text_of(LAWS, scenario=RUN, more=BOUNDED))
+    path = spec_in(tmp_path_factory.mktemp("spec"), text_of(LAWS, scenario=RUN, more=BOUNDED))
     return run_certification(read_spec(path), limits=Limits(optimize_rate=False))
 
 
@@ -71,10 +71,10 @@ def test_no_run_leaves_its_bound(certified, velocities, stay, turns):
 @pytest.fixture(scope="module")
 def sampled(tmp_path_factory):
     """One controller, every 2 ms, with the roundings of single precision."""
-    path = tmp_path_factory.mktemp("spec") / "sampled.nrs.yaml"
     more = BOUNDED.replace("8 deg/s", "8 deg/s, largest_angle: 1 rad")
     more = f"{more}sampling: {{period: 2 ms, delay: 0}}\n"
-    path.write_text(text_of({"insertion": LAWS["insertion"]}, scenario=RUN, more=more))
+    text = text_of({"insertion": LAWS["insertion"]}, scenario=RUN, more=more)
+    path = spec_in(tmp_path_factory.mktemp("spec"), text)
     return run_certification(read_spec(path), limits=Limits(optimize_rate=False))
 
 
@@ -157,9 +157,8 @@ PRESSED = ENDING + "surfaces: [{environment: soft, at: 1 deg}], control: {fixed:
 
 @pytest.fixture(scope="module")
 def ending(tmp_path_factory):
-    path = tmp_path_factory.mktemp("spec") / "small.nrs.yaml"
-    path.write_text(text_of(LAWS, scenario=PRESSED, more="contact: losable\n"))
-    return run_certification(read_spec(path))
+    text = text_of(LAWS, scenario=PRESSED, more="contact: losable\n")
+    return run_certification(read_spec(spec_in(tmp_path_factory.mktemp("spec"), text)))
 
 
 def test_once_nothing_is_commanded_a_run_decays_as_certified(ending):

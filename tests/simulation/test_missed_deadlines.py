@@ -12,14 +12,13 @@ from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.sampled_axis import draw_samples
 from nrs_design.spec import read_spec
 from nrs_design.spec.misses import DeadlinesSpec
-from tests.support import SOFT_TISSUE
+from tests.support import SOFT_TISSUE, spec_in
 
 
 def designed(path, misses):
     text = SOFT_TISSUE.read_text(encoding="utf-8")
     rule = f", misses: {misses}" if misses else ""
-    path = path / "missing.nrs.yaml"
-    path.write_text(f"{text}\nsampling: {{period: 2 ms, delay: [0, 1]{rule}}}\n", encoding="utf-8")
+    path = spec_in(path, f"{text}\nsampling: {{period: 2 ms, delay: [0, 1]{rule}}}\n", "missing")
     return run_design(read_spec(path))
 
 

@@ -1,13 +1,7 @@
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
-from nrs_design.simulation.norms import (
-    polynomial_norm,
-    quadratic_norm,
-    scaled_matrices,
-)
+from nrs_design.simulation.norms import polynomial_norm, quadratic_norm, scaled_matrices
 
 
 def test_quadratic_norm_of_known_vectors():

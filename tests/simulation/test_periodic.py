@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 
@@ -8,11 +6,7 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.simulation.periodic import (
-    mixture_matrix,
-    periodic_run,
-    time_of_growth,
-)
+from nrs_design.simulation.periodic import mixture_matrix, periodic_run, time_of_growth
 from tests.simulation.systems import reset, system
 
 SHEARS = system([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])

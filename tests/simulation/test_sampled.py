@@ -23,8 +23,7 @@ def sampled(scenario=RUN, more=SAMPLED, **options):
 
 
 @pytest.mark.parametrize(
-    ("controllers", "other"),
-    [(IMPEDANCE, "withdrawal"), ({**IMPEDANCE, **PLACED}, "position")],
+    ("controllers", "other"), [(IMPEDANCE, "withdrawal"), ({**IMPEDANCE, **PLACED}, "position")]
 )
 def test_shorter_samples_come_to_continuous_time(controllers, other):
     """To first order in the period."""
@@ -62,23 +61,6 @@ def test_an_environment_that_remembers_is_as_in_continuous_time():
     wanted = np.interp(response.t, exact.t, exact["torque"])
     assert response["torque"] == pytest.approx(wanted, abs=3e-3)
     assert wanted.max() > 0.1
-
-
-def test_position_and_force_control_keep_the_threshold():
-    text = text_of(
-        PLACED,
-        scenario="command: {points: [[0 s, 4 deg/s], [2 s, 4 deg/s]]}, "
-        "surfaces: [{environment: soft, at: 2 deg}], "
-        "control: {threshold: {position: position, force: force, torque: 0.27 N*m}}",
-        more=SAMPLED,
-    )
-    run = simulated(text, "sampled")
-    ((moment, name),) = run.switches
-    assert name == "force"
-    # The position that was commanded by then is held; see the same test of the exact engine.
-    reached = 43 * np.radians(4 * moment - 2)
-    wanted = (reached + 0.02 * 43 * 0.3) / (1 + 0.02 * 43)
-    assert run.response["torque"][-1] == pytest.approx(wanted, rel=1e-4)
 
 
 def test_noise_makes_a_logic_without_bands_chatter():

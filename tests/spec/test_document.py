@@ -19,6 +19,7 @@ from nrs_design.spec.document import (
 )
 from nrs_design.spec.edits import changed, in_one_line, node_at
 from tests.support import ends_soon
+from tests.tables import rows
 
 from .samples import assert_inside, refusal
 
@@ -112,16 +113,7 @@ def test_refuses_files_that_are_no_text(tmp_path: Path, content: bytes, said: st
     assert error.remedy
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("none.nrs.yaml", "no such file"),
-        (".", "not a file"),
-        ("pipe", "not a file"),
-        ("run.csv", "this is a table, not a spec"),
-        ("run.tsv", "this is a table, not a spec"),
-    ],
-)
+@pytest.mark.parametrize(("name", "said"), rows(__file__, "test_refuses_what_is_no_file_of_a_spec"))
 def test_refuses_what_is_no_file_of_a_spec(tmp_path: Path, name: str, said: str) -> None:
     """None of it is waited for."""
     os.mkfifo(tmp_path / "pipe")

@@ -7,6 +7,7 @@ from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.edits import saying_instead
 from nrs_design.spec.load import read_axes
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
+from tests.tables import rows
 
 TORQUE = (("limits", "torque"), "0.2 N*m")
 
@@ -26,12 +27,7 @@ def test_read_as_if_it_were_written(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("at", "text", "kept"),
-    [
-        (("stiffness",), "750 N/m", False),
-        (("lever_arm",), "0.2 m", False),
-        (("accept_doubt",), "another reason", True),
-    ],
+    ("at", "text", "kept"), rows(__file__, "test_other_values_are_not_those_that_were_identified")
 )
 def test_other_values_are_not_those_that_were_identified(tmp_path, at, text, kept):
     """They were refused, or would be said to hold what the records do."""

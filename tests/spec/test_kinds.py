@@ -24,12 +24,8 @@ def test_what_enters_a_proof_has_no_factor_of_pi():
     Of the deflections of a preload, only their ratios are. Joint positions are rounded outwards.
     """
     assert {name for name, kind in NAMED.items() if not kind.rational} == {
-        "ANGLE",
-        "ANGULAR_ACCELERATION",
-        "ANGULAR_VELOCITY",
-        "BANDWIDTH",
-        "DEFLECTION",
-        "PHASE",
+        *("ANGLE", "ANGULAR_ACCELERATION", "ANGULAR_VELOCITY"),
+        *("BANDWIDTH", "DEFLECTION", "PHASE"),
     }
     with pytest.raises(SpecError, match="pi"):
         parse_quantity("3 N*mm/deg", kinds.STIFFNESS)

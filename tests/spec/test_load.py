@@ -1,6 +1,4 @@
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Literal
 
@@ -12,7 +10,7 @@ from nrs_design.errors import SpecError
 from nrs_design.spec import SwitchedSystemSpec, load_spec, read_spec
 from nrs_design.spec.document import hash_meaning, parse_document, to_data
 from nrs_design.spec.load import SPEC_KINDS, model_of
-from tests.support import COMMUTING
+from tests.support import COMMUTING, ROOT, spec_in, started
 
 from .samples import SWITCHED
 
@@ -64,8 +62,7 @@ def test_equal_hashes_mean_equal_documents(one: object, other: object) -> None:
 
 
 def test_error_names_the_file(tmp_path: Path) -> None:
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(SWITCHED.replace("name: sample", "name: -"))
+    path = spec_in(tmp_path, SWITCHED.replace("name: sample", "name: -"), "a")
     with pytest.raises(SpecError) as caught:
         load_spec(path)
     assert caught.value.path == path
@@ -74,8 +71,7 @@ def test_error_names_the_file(tmp_path: Path) -> None:
 
 def printed(code: str) -> list[str]:
     """Return the lines that a program prints."""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return done.stdout.splitlines()
+    return started("-c", code, cwd=ROOT).stdout.splitlines()
 
 
 def test_import_is_light() -> None:

@@ -12,17 +12,12 @@ from nrs_design.models.interval import Interval
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
 from nrs_design.spec.preload import DIGITS, ExponentSpec, power_between, power_box
+from tests.tables import spec_text
 
 from .samples import IMPEDANCE, interaction, spoiled
 
 F = Fraction
-LAW = """model: hunt-crossley
-    stiffness: {nominal: 750 N/m, range: [700 N/m, 800 N/m]}
-    damping: 10 N*s/m
-    exponent: {nominal: 1.2, range: [1.1, 1.3]}
-    about: 4 mm
-    preload: [2 mm, 8 mm]
-"""
+LAW = spec_text("hunt-crossley")
 LINEAR = "model: elastic\n    stiffness: 747.1461 N/m\n"
 TEXT = spoiled(IMPEDANCE, LINEAR, LAW)
 

@@ -12,6 +12,7 @@ from nrs_design.spec import load_spec
 from nrs_design.spec.load import axes_at, read_axes
 from nrs_design.spec.schema import json_schema
 from nrs_design.spec.templates import TEMPLATES
+from tests.support import spec_in
 from tests.tables import edited, spec_text, table
 
 from .samples import FORCE, IMPEDANCE, SWITCHED, refusal, spoiled
@@ -56,9 +57,7 @@ def test_shipped_specs_validate_and_are_named_as_their_files(path: Path) -> None
 )
 def test_templates_and_samples_validate(text: str, tmp_path: Path) -> None:
     assert faults(text) == []
-    path = tmp_path / "sample.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
-    assert read_axes(path)
+    assert read_axes(spec_in(tmp_path, text, "sample"))
 
 
 @pytest.mark.parametrize(

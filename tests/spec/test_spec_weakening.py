@@ -22,7 +22,7 @@ from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.spec_weakening import find_changes
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from tests.support import ROOT
-from tests.tables import cases_of, edit_of, edited, spec_text
+from tests.tables import cases_of, edit_of, edited, rows, spec_text
 
 
 def spec_of(text):
@@ -150,9 +150,7 @@ def test_a_narrower_range_of_a_drive_is_weaker_and_another_drive_is_not(name):
     assert not is_weaker(said[3], said[2])
 
 
-@pytest.mark.parametrize(
-    "name", ["ImpedanceController", "ForceController", "IntegralController", "TorqueImpedance"]
-)
+@pytest.mark.parametrize("name", rows(__file__, "test_what_a_controller_touches"))
 def test_what_a_controller_touches(name):
     model = MODELS[name]
     assert is_weaker(*values_of(model, "environment", "soft", "hard"))

@@ -5,7 +5,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import read_spec
 from nrs_design.spec.load import axes_at, is_there, read_axes
-from tests.support import replaced
+from tests.support import replaced, spec_in
 from tests.tables import rows, spec_text
 
 TEXT = spec_text("two-axes")
@@ -14,9 +14,7 @@ TEXT = spec_text("two-axes")
 @pytest.fixture
 def write(tmp_path):
     def written(*changes):
-        path = tmp_path / "two.nrs.yaml"
-        path.write_text(replaced(TEXT, *changes), encoding="utf-8")
-        return path
+        return spec_in(tmp_path, replaced(TEXT, *changes), "two")
 
     return written
 
@@ -64,8 +62,7 @@ def test_what_is_asked_of_the_whole_names_the_axes(write):
 
 
 def test_a_file_without_axes_has_none(tmp_path):
-    path = tmp_path / "one.nrs.yaml"
-    path.write_text("kind: switched-system\nname: one\ntime: discrete\n", encoding="utf-8")
+    path = spec_in(tmp_path, "kind: switched-system\nname: one\ntime: discrete\n", "one")
     assert axes_at(path) == (path,)
     with pytest.raises(SpecError, match="holds no axes"):
         read_spec(f"{path}#x")

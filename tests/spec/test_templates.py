@@ -6,6 +6,7 @@ import pytest
 from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.load import read_axes
 from nrs_design.spec.templates import TEMPLATES
+from tests.support import spec_in
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -14,8 +15,7 @@ ROOT = Path(__file__).resolve().parents[2]
 def test_templates_load_and_point_to_their_schema(name: str, tmp_path: Path) -> None:
     text = TEMPLATES[name]
     assert text.splitlines()[0] == "# yaml-language-server: $schema=./nrs.schema.json"
-    path = tmp_path / "template.nrs.yaml"
-    path.write_text(text, encoding="utf-8")
+    path = spec_in(tmp_path, text, "template")
     for axis in read_axes(path):
         assert isinstance(axis.spec, RobotSpec) or axis.spec.switching.is_arbitrary
     assert text.isascii()

@@ -1,5 +1,3 @@
-from __future__ import annotations
-
 from nrs_design.reporting.document import Paragraph
 from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine

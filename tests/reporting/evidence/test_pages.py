@@ -1,7 +1,5 @@
 """One page for each kind of evidence, and nobody else asks which kind it is."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The table of limits: nothing is claimed of a lower one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

@@ -17,6 +17,7 @@ from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
 from tests.proof.graphs import mode_quadratic, scalars
 from tests.proof.systems import family, left_within, resets_between
+from tests.tables import by_rows
 
 A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
 HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
@@ -46,24 +47,7 @@ def test_a_shift_is_added_to_the_diagonal():
 
 
 # exp(-2) is 0.1353...: one thousand decreases to a tenth of it, 7389 being exp(2) of it.
-@pytest.mark.parametrize(
-    ("given", "shown"),
-    [
-        ((-1, 0, 1, 1, 1000, 7389), True),
-        ((-1, 0, 1, 1, 1000, 7390), False),
-        # The rate takes away from the decay.
-        ((-2, 1, 1, 1, 1000, 7390), False),
-        # A reset to one half is worth a factor of four.
-        ((-1, 0, 1, 1, 1000, 29556, "1/2"), True),
-        ((-1, 0, 1, 1, 1000, 29557, "1/2"), False),
-        # Every time from one to the other counts, for decay the first, for growth the last.
-        ((-1, 0, "0.99", 1, 1000, 7389), False),
-        ((1, 0, 0, "0.01", 1000, 1000), False),
-        ((1, 0, 0, "0.01", 1021, 1000), True),
-        # exp(4) is 54.6, and exp(2) in the middle 7.39.
-        ((1, 0, 0, 2, 1000, 20), False),
-    ],
-)
+@by_rows("given", "shown")
 def test_the_form_of_a_stay_against_the_exponential(given, shown):
     entry, rate, begin, end, before, after, *gain = given
     source, target = (Mode(name, RationalMatrix.from_rows([[entry]])) for name in "ij")
@@ -152,16 +136,7 @@ def test_a_switch_at_once_may_not_raise_the_function(gain, rises):
     assert slow.find_fault(replace(system, switching=later)) is None
 
 
-@pytest.mark.parametrize(
-    ("dwell", "time", "fault"),
-    [
-        (4096, Time.CONTINUOUS, None),
-        (4097, Time.CONTINUOUS, "the dwell time is too long"),
-        (4097, Time.DISCRETE, "the dwell time is too long"),
-        (Fraction(3, 2), Time.DISCRETE, "the dwell time is not a whole number of steps"),
-        (Fraction(3, 2), Time.CONTINUOUS, None),
-    ],
-)
+@by_rows("dwell", "time", "fault", time=Time, dwell=Fraction)
 def test_dwell_times_within_the_limits(dwell, time, fault):
     system = family([["-1/2"]], [["-1/2"]], time=time)
     assert odd(replace(system, switching=Switching(Fraction(dwell)))) == fault

@@ -80,9 +80,14 @@ def files_in(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in there)
 
 
+def said(file: str, name: str) -> Any:
+    """Return what the table beside a file says by a name."""
+    return table(Path(file).with_suffix(".yaml"))[name]
+
+
 def rows(file: str, name: str) -> list[Any]:
     """Return the rows of a test, from the table beside its file."""
-    return list(table(Path(file).with_suffix(".yaml"))[name])
+    return list(said(file, name))
 
 
 def by_rows(*names: str, **kinds: Callable[[Any], Any]) -> Callable[[Any], Any]:

@@ -72,7 +72,6 @@ class Lagged(laws.AbstractCompliantLaw):
 
 
 POSITION = Controller("p", laws.PositionControl(), None, ())
-PUSHING = Controller("f", laws.ProportionalForce(F("0.02")), "soft", ("soft",))
 
 
 class TestAssembly:

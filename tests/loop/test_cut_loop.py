@@ -14,26 +14,10 @@ from nrs_design.models.contact import KelvinVoigt
 from nrs_design.pipeline.runs import run_design
 from tests.loop.support import loaded
 from tests.support import thinned
-from tests.tables import spec_text
+from tests.tables import said, spec_text
 
 # Plants by what they have; every random draw fills in its numbers.
-FEATURES = {
-    "plain": "",
-    "load": "load",
-    "motor ranges": "motor",
-    "load and ranges": "load motor",
-    "filter": "filter",
-    "spring": "spring",
-    "damping": "damping",
-    "static": "static load damping",
-    "all": "load motor filter spring damping",
-    "sampled": "sampled",
-    "late": "sampled late damping",
-    "sampled filter": "sampled late filter",
-    "sampled spring": "sampled late spring",
-    "slow force": "sampled slow",
-    "sampled motor": "sampled motor late damping",
-}
+FEATURES = said(__file__, "features")
 
 
 def text_of(features, seed):

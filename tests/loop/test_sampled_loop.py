@@ -17,21 +17,11 @@ from nrs_design.search.certify import Limits, certify
 from tests.loop.support import assembled, sampled
 from tests.proof.graphs import shape_of
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
-from tests.tables import by_rows, spec_text
+from tests.tables import by_rows, said, spec_text
 
 SAMPLED = "{period: 2 ms, delay: 0}"
 OLDER = "{period: 2 ms, delay: [0, 1]}"
-TOLERANCE = (
-    (
-        "gain: 4.8417e-4 rad/s/rpm",
-        "gain: {nominal: 4.8417e-4 rad/s/rpm, "
-        "range: [4.744866e-4 rad/s/rpm, 4.938534e-4 rad/s/rpm]}",
-    ),
-    (
-        "time_constant: 0.0351 s",
-        "time_constant: {nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}",
-    ),
-)
+TOLERANCE = said(__file__, "tolerance")
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
 SPRUNG = (BT, f"Kt: 0.5 N*m/rad\n    {BT}")
 

@@ -22,7 +22,6 @@ from tests.tables import by_rows
 A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
 HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
 LONG = "the dwell time is too long for such large numbers"
-NOT_THOSE = "the modes that must be left are not those of the system"
 PIECES = "the stays are enclosed in too few or too many pieces"
 SWITCHES = "there are too many switches to check"
 RESETS = resets_between(("m0", "m1", [[1, 0], [0, 1]]), ("m1", "m0", [[1, 0], [0, 1]]))
@@ -145,16 +144,7 @@ def test_dwell_times_within_the_limits(dwell, time, fault):
         assert odd(left, ("m0", "m1")) == fault
 
 
-@pytest.mark.parametrize(
-    ("leaving", "fault"),
-    [
-        ((), None),
-        (("m0",), None),
-        (("m0", "m0"), NOT_THOSE),
-        (("m3",), NOT_THOSE),
-        (("m0", "m1"), "a mode in which the function need not decrease has no longest dwell time"),
-    ],
-)
+@by_rows("leaving", "fault")
 def test_only_what_must_be_left_need_not_decrease(leaving, fault):
     assert odd(family([[-1]], [[-1]], switching=left_within((0, 1))), leaving) == fault
 

@@ -170,16 +170,7 @@ class TestModes:
         assert result.verdict is Verdict.REFUTED
         assert bad_mode(result.evidence) == f"m{others}"
 
-    @pytest.mark.parametrize(
-        "A",
-        [
-            ROTATION,
-            [["0.6", "0.8"], ["-0.8", "0.6"]],
-            [[1, 0], [0, 0]],
-            [[0, 0], [0, -1]],
-            [[2, 0], [0, 0]],
-        ],
-    )
+    @by_rows("A")
     def test_one_bad_mode_refutes_in_discrete_time(self, A):
         result = settle(family([[0, 0], [0, 0]], A, time=Time.DISCRETE))
         assert result.verdict is Verdict.REFUTED
@@ -335,17 +326,7 @@ class TestMethods:
         )
         assert outcome(bad, method) == ("refuted", "impossible")
 
-    @pytest.mark.parametrize(
-        ("method", "system"),
-        [
-            (Method.CONSTANTS_QUADRATIC, STABLE),
-            (Method.VALUE, STABLE),
-            (Method.MODE_POLYNOMIAL, SLOW),
-            (Method.MODE_POLYNOMIAL, DISCRETE),
-            (Method.MIXTURE, SLOW),
-            (Method.MIXTURE, DISCRETE),
-        ],
-    )
+    @by_rows("method", "system", method=Method, system=globals().get)
     def test_rungs_that_do_not_apply_are_refused(self, method, system):
         with pytest.raises(DesignError, match=f"{method} does not apply") as caught:
             certify(system, method)

@@ -24,7 +24,7 @@ from tests.proof import systems
 from tests.proof.graphs import shape_of
 from tests.search.support import found, outcome, thesis_robot
 from tests.search.test_stays import A, B, timed
-from tests.tables import by_rows
+from tests.tables import by_rows, said
 
 BOTH = ("2.15", "1.04")
 slow = pytest.mark.slow
@@ -212,15 +212,7 @@ def test_free_motion_that_does_not_slow_down_is_not_found():
     assert why
 
 
-@pytest.mark.parametrize(
-    ("k", "Bt", "Mt", "rate"),
-    [
-        (SOFT, BOTH, "0.01", 3.92),
-        (SOFT, INSERTION, "0.01", 14.1),
-        (SOFT, ("1.04",), "0.01", 4.92),
-        (SOFT, BOTH, "0", 7.61),
-    ],
-)
+@by_rows("k", "Bt", "Mt", "rate")
 def test_rates_in_continuous_time(k, Bt, Mt, rate):
     system = thesis_robot(k, Bt, Mt)
     evidence = found(module.search_together, system)
@@ -247,15 +239,7 @@ SAMPLED = [
     pytest.param(STIFF, ("2.15", "1.5"), "0", "[0, 2]", "0", None, marks=slow),
 ]
 # The least damping of withdrawal that is proved beside insertion, for a delay and a tolerance.
-LEAST = [
-    ("0.01", "0.95", "[0, 1]", "0"),
-    ("0.01", "1.045", "[0, 2]", "0.02"),
-    ("0.01", "1.225", "[0, 5]", "0"),
-    ("0.005", "0.97", "[0, 2]", "0.02"),
-    ("0", "0.74", "[0, 1]", "0"),
-    ("0", "0.83", "[0, 2]", "0.02"),
-    ("0", "1.02", "[0, 5]", "0"),
-]
+LEAST = said(__file__, "least")
 
 
 @slow

@@ -16,6 +16,7 @@ from nrs_design.search.period import search_period
 from tests.proof import systems
 from tests.proof.truth import holds
 from tests.search.support import found
+from tests.tables import by_rows
 
 FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)
 
@@ -222,30 +223,12 @@ def test_resets_at_every_switch_in_continuous_time(rules, verdict):
     assert holds(found.system, found.evidence)
 
 
-@pytest.mark.parametrize(
-    ("longest", "verdict"), [(2, "proved"), (3, "inconclusive"), (4, "refuted")]
-)
-def test_a_mode_that_must_be_left(longest, verdict):
-    # With three steps, the slowest cycle neither grows nor decays.
-    found = certify(systems.must_leave(longest), limits=FAST)
+@by_rows("system", "verdict", system=systems.built)
+def test_what_must_be_left_and_the_worst_of_two_resets(system, verdict):
+    found = certify(system, limits=FAST)
     assert found.verdict == verdict
-    if found.evidence is not None:
-        assert holds(found.system, found.evidence)
-
-
-@pytest.mark.parametrize(("rest", "verdict"), [("1.1", "proved"), ("0.95", "refuted")])
-def test_a_mode_that_must_be_left_in_time(rest, verdict):
-    found = certify(systems.must_leave_in_time(rest), limits=FAST)
-    assert found.verdict == verdict
-    assert holds(found.system, found.evidence)
-
-
-@pytest.mark.parametrize(("gain", "verdict"), [("3.9", "proved"), ("4.1", "refuted")])
-def test_the_worst_of_two_resets_decides(gain, verdict):
-    found = certify(systems.two_ways(gain), limits=FAST)
-    assert found.verdict == verdict
-    assert holds(found.system, found.evidence)
-    if verdict == "refuted":
+    assert found.evidence is None or holds(system, found.evidence)
+    if system.switching.resets and verdict == "refuted":
         assert found.evidence.edges == (1, 0)
 
 

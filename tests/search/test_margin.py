@@ -67,6 +67,10 @@ def between(proved, refuted, beyond=10**9):
     return rule
 
 
+def ruled(numbers):
+    return between(*map(Fraction, numbers))
+
+
 def box_of(rule, known=None):
     given_rule = Rule(rule)
     found = margin.find_margin(given_rule.assemble, given_rule.certify, known)
@@ -110,18 +114,7 @@ def test_a_box_never_contradicts_what_is_known_of_the_declared_ranges(known):
     assert 1 not in seen
 
 
-@pytest.mark.parametrize(
-    ("rule", "proved", "refuted", "end"),
-    [
-        (between(-1, 0), None, 0, ""),
-        (between(-1, 99), None, None, "none of up to 8 is refuted: the search ends there"),
-        (between(100, 200), 64, None, "none of up to 64 is refuted: the search ends there"),
-        (between(9, 9, Fraction(5, 4)), Fraction(5, 4), None, "makes no system (too large)"),
-        # Doubling leaps over scales that make a system; the widest of them is looked at.
-        (between(1, Fraction(19, 10), Fraction(39, 20)), 1, Fraction(31207, 16384), ""),
-        (between(0, 9, 0), 0, None, "none of up to 0 is refuted"),
-    ],
-)
+@by_rows("rule", "proved", "refuted", "end", rule=ruled, proved=Fraction, refuted=Fraction)
 def test_where_a_box_ends(rule, proved, refuted, end):
     box, _ = box_of(rule)
     assert (box.proved, box.refuted) == (proved, refuted)
@@ -134,21 +127,7 @@ def test_nominal_values_that_make_no_system_are_an_error():
         box_of(between(1, 2, beyond=-1))
 
 
-@pytest.mark.parametrize(
-    ("rule", "shortest", "declared", "unstable", "expected"),
-    [
-        (between(1, 3), 0, 1, 99, (1, 3)),
-        (between(10, 99), 0, 1, 99, (10, None)),
-        (between(10, 99), 0, 2, 21, (10, 21)),
-        (between(2, 99), 0, 2, 33, (2, None)),
-        (between(2, 99), 0, 2, 10, (2, 10)),
-        (between(0, 1), 0, 2, 99, (0, 1)),
-        (between(0, 2), 0, 2, 99, (0, 2)),
-        (between(-1, 0), 0, 0, 99, (None, 0)),
-        (between(-1, 9), 1, 2, 99, (None, 9)),
-        (between(4, 99, beyond=4), 0, 1, 12, (4, 12)),
-    ],
-)
+@by_rows("rule", "shortest", "declared", "unstable", "expected", rule=ruled, expected=tuple)
 def test_the_longest_delay(rule, shortest, declared, unstable, expected):
     """Beyond ten samples, those from `unstable` on are refuted by a quick test alone."""
     own, told = Rule(rule), []

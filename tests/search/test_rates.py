@@ -17,6 +17,7 @@ from nrs_design.search.graphs import draw_balanced
 from nrs_design.work import Allowance, Cost, NotAffordableError
 from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
+from tests.tables import by_rows
 
 PAIR = Family.of(dayawansa_martin(5))
 # How exactly a position is found where it is not told otherwise.
@@ -204,18 +205,7 @@ def test_few_claims_and_few_digits_where_checks_take_long():
     assert module.digits() == module.BITS
 
 
-@pytest.mark.parametrize(
-    ("position", "limit", "time"),
-    [
-        (1.0, np.nan, CONTINUOUS),
-        (1.0, np.inf, CONTINUOUS),
-        (1.0, -1.0, CONTINUOUS),
-        (0.0, 1.0, CONTINUOUS),
-        (0.0, 0.5, DISCRETE),
-        (1.0, 1.5, DISCRETE),
-        (1.0, np.nan, DISCRETE),
-    ],
-)
+@by_rows("position", "limit", "time", time=Time)
 def test_what_is_no_decay_is_not_claimed(position, limit, time):
     assert list(module.claims(position, limit, time)) == []
 

@@ -5,6 +5,7 @@ is replaced and what stands there instead, once or several times.
 """
 
 import shlex
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -85,4 +86,26 @@ def entry(file: str, name: str) -> Any:
 
 
 def rows(file: str, name: str) -> list[Any]:
+    """Return the rows of a test, from the table beside its file."""
     return list(entry(file, name))
+
+
+def by_rows(*names: str, **kinds: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Run a test once for each row of its name, in the table beside its file.
+
+    What has a kind is made by it, unless it is null.
+    """
+
+    def value(name: str, said: Any) -> Any:
+        return said if said is None or name not in kinds else kinds[name](said)
+
+    def run(test: Any) -> Any:
+        found = rows(test.__code__.co_filename, test.__name__)
+        if len(names) == 1:
+            return pytest.mark.parametrize(names, [(value(names[0], said),) for said in found])(
+                test
+            )
+        made = [tuple(map(value, names, row)) for row in found]
+        return pytest.mark.parametrize(names, made)(test)
+
+    return run

@@ -15,6 +15,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.spec import LoadedSpec, load_spec, parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, words_of
+from tests.tables import spec_text
 
 GIVEN_LOOP = """motion_loop:
   transfer_function:
@@ -223,22 +224,7 @@ BOX = parse_spec(
     "parameters:\n  k: {nominal: 3, range: [1, 6]}\n"
     "  m: {nominal: 1, range: [0, 2], varies: false}\nmodes: [{name: a, A: [['-k - m']]}]\n"
 )
-TEXT = """\
-kind: interaction-design
-name: hand
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  hand:
-    model: kelvin-voigt
-    stiffness: {nominal: 50 N*m/rad, range: [25 N*m/rad, 90 N*m/rad]}
-    damping: {nominal: 0.5 N*m*s/rad, range: [0.25 N*m*s/rad, 1 N*m*s/rad]}
-  other: {model: elastic, stiffness: {nominal: 1 N*m/rad, range: [0.25 N*m/rad, 2 N*m/rad]}}
-controllers:
-  insertion: {type: impedance, environment: hand, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
-switching: arbitrary
-"""
+TEXT = spec_text("hand")
 HAND = parse_spec(TEXT)
 SCALES = st.fractions(0, 4, max_denominator=9)
 

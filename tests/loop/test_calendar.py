@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.loop.calendar import CommandTiming
+from tests.tables import by_rows
 
 F = Fraction
 MS = F(1, 1000)
@@ -21,17 +22,7 @@ def test_whole_periods_leave_nothing_within_a_period(periods):
     assert not timing.varies
 
 
-@pytest.mark.parametrize(
-    ("earliest", "latest", "left"),
-    [
-        # Half a period; a range within one; one of more than two periods; from nothing on.
-        (1, 1, {0: (1, 1)}),
-        ("0.6", "1.4", {0: ("0.6", "1.4")}),
-        ("0.6", "4.8", {2: ("1.2", 2), 1: (0, 2), 0: (0, "1.4")}),
-        (0, "0.5", {0: ("1.5", 2)}),
-        (3, 3, {1: (1, 1)}),
-    ],
-)
+@by_rows("earliest", "latest", "left")
 def test_what_is_left_of_a_period(earliest, latest, left):
     timing = CommandTiming(2 * MS, F(earliest) * MS, F(latest) * MS)
     assert [*timing.within] == [*left]

@@ -11,14 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.controllers import laws
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.laws import (
-    AbstractCompliantLaw,
-    Admittance,
-    PositionControl,
-    ProportionalDerivative,
-    ProportionalForce,
-)
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.close_loop import close_loop
 from nrs_design.loop.modes import velocity_mode
@@ -40,12 +34,12 @@ CONDITIONS = build_conditions(loaded(SOFT_TISSUE).spec)
 def closed(environments, *controllers, contact=None):
     """Close the motion loop of the thesis around some environments."""
     plant = Plant(MOTOR, tuple(environments), ActuatorRanges.point(MOTOR), LOOP)
-    design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
+    design = ControllerDesign(laws.ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop(replace(CONDITIONS, contact=contact), plant, design)[0]
 
 
 def impedance(name, Mt, contacts=("soft",)):
-    return Controller(name, Admittance(F(Mt), F(2)), contacts[0], contacts)
+    return Controller(name, laws.Admittance(F(Mt), F(2)), contacts[0], contacts)
 
 
 def assembled(*controllers, contact=None):
@@ -57,7 +51,7 @@ def assembled(*controllers, contact=None):
 
 
 @dataclass(frozen=True, slots=True)
-class Lagged(AbstractCompliantLaw):
+class Lagged(laws.AbstractCompliantLaw):
     """A law with one state, as an admittance with inertia has one."""
 
     name = "lagged"
@@ -77,8 +71,7 @@ class Lagged(AbstractCompliantLaw):
         raise NotImplementedError
 
 
-POSITION = Controller("p", PositionControl(), None, ())
-PUSHING = Controller("f", ProportionalForce(F("0.02")), "soft", ("soft",))
+POSITION = Controller("p", laws.PositionControl(), None, ())
 
 
 class TestAssembly:
@@ -97,7 +90,7 @@ class TestAssembly:
         assert position.modes[0].A.fractions() == [list(row) for row in MOTION.A]
 
     def test_with_a_spring_free_motion_is_a_mode_like_others(self):
-        sprung = Controller("in", Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
+        sprung = Controller("in", laws.Admittance(F("0.01"), F(2), F("0.5")), "soft", ("soft",))
         system = assembled(sprung, contact="losable")
         assert [mode.name for mode in system.modes] == ["in/soft/k-min", "in/soft/k-max", "in/free"]
         assert system.contact is None
@@ -109,7 +102,7 @@ class TestAssembly:
             assembled(sprung, plain, contact="losable")
 
     def test_a_spring_needs_a_deflection_that_stays(self):
-        sprung = Admittance(F("0.01"), F(2), F("0.5"))
+        sprung = laws.Admittance(F("0.01"), F(2), F("0.5"))
         with pytest.raises(AssemblyError, match="gel, which has no rest position") as caught:
             viscoelastic("gel", law=sprung)
         assert caught.value.at == ("controllers", "in", "Kt")
@@ -146,7 +139,7 @@ ENVIRONMENTS = {
 
 @cache
 def viscoelastic(*contacts, Mt="0.01", law=None):
-    law = law or Admittance(F(Mt), F(2))
+    law = law or laws.Admittance(F(Mt), F(2))
     return closed(ENVIRONMENTS.values(), Controller("in", law, contacts[0], contacts))
 
 
@@ -170,12 +163,12 @@ class TestViscoelastic:
             free = product_of(LOOP.denominator, below, admittance)
             contact = product_of(LOOP.numerator, above)
             free[len(free) - len(contact) :] += contact
-            found = polynomial(velocity_mode(MOTION, Admittance(Mt, Bt), law))
+            found = polynomial(velocity_mode(MOTION, laws.Admittance(Mt, Bt), law))
             assert list(free / free[0]) == found
 
     def test_maxwell_has_no_deflection_among_its_states(self):
         """With it the loop had an eigenvalue zero: it creeps, and nothing drives it back."""
-        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), GEL)
+        rows = velocity_mode(MOTION, laws.Admittance(F("0.01"), F(2)), GEL)
         assert stable(rows)
         with_delta = [[*row, F(0)] for row in rows] + [[*MOTION.C, F(0), F(0), F(0)]]
         assert polynomial(with_delta) == [*polynomial(rows), 0]
@@ -201,7 +194,7 @@ class TestViscoelastic:
         assert tool[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(12, 8), 0]
         assert tool[5] == [0, 0, 0, 0, 0, F(-1, 30)]
         assert [row[4:] for row in tool[:4]] == [[0, 0]] * 4
-        plain = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), Elastic(F(41)))
+        plain = velocity_mode(MOTION, laws.Admittance(F("0.01"), F(2)), Elastic(F(41)))
         assert [row[:4] for row in tool[:4]] == plain
         concha = next(m for m in system.modes if m.name == "in/concha/r-nose-min").A.fractions()
         assert concha[4] == [0, 0, 0, 0, -F("0.233") / F("23.631") * F(8, 12), 0]
@@ -222,14 +215,14 @@ class TestViscoelastic:
         with pytest.raises(AssemblyError, match="gel has no rest position"):
             viscoelastic("tool", "gel")
         with pytest.raises(AssemblyError, match="from which positions"):
-            viscoelastic("gel", law=ProportionalForce(F("0.02")))
+            viscoelastic("gel", law=laws.ProportionalForce(F("0.02")))
 
 
 def test_things_touched_at_once():
     """Springs may be lost one by one; what is damped is kept, and nothing is said of its loss."""
     springs = touched_at_once(Environment("stiff", Elastic, (Interval.point(F(61)),)), losable=True)
     assert [mode.name for mode in springs.modes] == ["a/soft+stiff/k-min", "a/soft+stiff/k-max"]
-    rows = [velocity_mode(MOTION, Admittance(F(1), F(2)), Elastic(F(k))) for k in (41, 106)]
+    rows = [velocity_mode(MOTION, laws.Admittance(F(1), F(2)), Elastic(F(k))) for k in (41, 106)]
     assert [mode.A.fractions() for mode in springs.modes] == rows
     assert springs.contact is not None
     assert any("each may be lost on its own" in text for text in words_of(springs))
@@ -243,5 +236,5 @@ def test_things_touched_at_once():
 def touched_at_once(other, *, losable):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     both = touch_at_once((soft, other), losable=losable)
-    controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
+    controller = Controller("a", laws.Admittance(F(1), F(2)), "soft", (both.name,))
     return closed((soft, other, both), controller)

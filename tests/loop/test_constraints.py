@@ -14,24 +14,10 @@ from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import SwitchingSpec, parse_spec
 from tests.loop.support import assembled, loaded
 from tests.support import words_of
-from tests.tables import cases_of
+from tests.tables import cases_of, spec_text
 
 HEAD = "kind: switched-system\nname: s\ntime: {}\n"
-PAIR = """\
-kind: interaction-design
-name: pair
-actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: STIFFNESS}
-  hand: {model: elastic, stiffness: 50 N*m/rad}
-controllers:
-  insertion: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad,
-    contacts: CONTACTS}
-  withdrawal: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 1.04 N*m*s/rad}
-switching: RULES
-"""
+PAIR = spec_text("ruled-pair")
 CASES = cases_of(Path(__file__).with_suffix(".yaml"), "cases")
 
 
@@ -169,21 +155,7 @@ def test_stays_of_too_many_samples_are_refused_with_what_to_write():
     assert "333 samples each, which is 166.5 s" in refused.value.remedy
 
 
-STAYS = """
-kind: interaction-design
-name: stays
-title: Stays
-position_interface: {time_constant: 0.01 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: {nominal: 20 N*m/rad, range: [5 N*m/rad, 100 N*m/rad]}}
-controllers:
-  firm: {type: impedance, environment: soft, Mt: 0.3 kg*m^2, Bt: 3 N*m*s/rad}
-  mild: {type: impedance, environment: soft, Mt: 0.2 kg*m^2, Bt: 3 N*m*s/rad}
-sampling: {period: 10 ms, delay: 1, jitter: 2 ms}
-contact: kept
-switching: {dwell_time: 0.1 s}
-"""
+STAYS = spec_text("counted-stays")
 ALONE = "  mild: {type: impedance, environment: soft, Mt: 0.2 kg*m^2, Bt: 3 N*m*s/rad}\n", ""
 
 

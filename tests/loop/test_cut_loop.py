@@ -14,25 +14,10 @@ from nrs_design.models.contact import KelvinVoigt
 from nrs_design.pipeline.runs import run_design
 from tests.loop.support import loaded
 from tests.support import thinned
+from tests.tables import entry, spec_text
 
 # Plants by what they have; every random draw fills in its numbers.
-FEATURES = {
-    "plain": "",
-    "load": "load",
-    "motor ranges": "motor",
-    "load and ranges": "load motor",
-    "filter": "filter",
-    "spring": "spring",
-    "damping": "damping",
-    "static": "static load damping",
-    "all": "load motor filter spring damping",
-    "sampled": "sampled",
-    "late": "sampled late damping",
-    "sampled filter": "sampled late filter",
-    "sampled spring": "sampled late spring",
-    "slow force": "sampled slow",
-    "sampled motor": "sampled motor late damping",
-}
+FEATURES = entry(__file__, "features")
 
 
 def text_of(features, seed):
@@ -182,19 +167,7 @@ def test_a_force_that_is_sampled_more_often_than_the_motion_loop_has_no_axis():
     assert axis_of(designed.spec, designed.plant, design.motion, design.sensor) is None
 
 
-STREAMED = """
-kind: interaction-design
-name: streamed
-title: A spring on the measured position
-velocity_interface: {time_constant: 0.03 s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments: {tissue: {model: elastic, stiffness: 40 N*m/rad}}
-controllers:
-  firm: {type: impedance, environment: tissue, Mt: 0.1 kg*m^2, Bt: 10 N*m*s/rad, Kt: 80 N*m/rad}
-switching: arbitrary
-contact: kept
-sampling: {period: 2 ms, delay: 1}
-"""
+STREAMED = spec_text("streamed-spring")
 
 
 def test_a_spring_on_the_measured_position_is_cut_with_the_force():

@@ -7,14 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from nrs_design.loop.entries import Entries, exact_rows, highest, lowest, middle
-from nrs_design.models.drive import (
-    MEMORY,
-    lagging_drive,
-    motor_drive,
-    position_drive,
-    torque_drive,
-    velocity_drive,
-)
+from nrs_design.models import drive as module
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.proof.enclosure import ball_around, precision
@@ -25,22 +18,22 @@ JUMPS = MotionLoop((F(28), F(1619)), (F(1), F(57), F(1619)))
 STILL = MotionLoop((F(1),), (F(1), F(0)))
 NUMBERS = {"Km": F(1), "tau": F(1, 30), "J": F(1, 5), "B": F(1, 2), "k": F(40), "b": F(1, 4)}
 NUMBERS |= {"r1": F(7), "r2": F(11)}
-MOTOR = motor_drive(Interval.point(F(1)), Interval.point(F(1, 30)))
-LOADED = motor_drive(Interval.point(F(1)), Interval.point(F(1, 30)), F(1, 5))
-TORQUE = torque_drive(Interval.point(F(1, 5)), Interval.point(F(1, 2)))
-LAG = lagging_drive(Interval.point(F(1, 30)))
+MOTOR = module.motor_drive(Interval.point(F(1)), Interval.point(F(1, 30)))
+LOADED = module.motor_drive(Interval.point(F(1)), Interval.point(F(1, 30)), F(1, 5))
+TORQUE = module.torque_drive(Interval.point(F(1, 5)), Interval.point(F(1, 2)))
+LAG = module.lagging_drive(Interval.point(F(1, 30)))
 DRIVES = {
     "motor": MOTOR,
     "loaded": LOADED,
     "torque": TORQUE,
     "lag": LAG,
-    "position": position_drive(SECOND),
-    "jumping": position_drive(JUMPS),
-    "velocity": velocity_drive(SECOND),
-    "integrator": velocity_drive(STILL),
+    "position": module.position_drive(SECOND),
+    "jumping": module.position_drive(JUMPS),
+    "velocity": module.velocity_drive(SECOND),
+    "integrator": module.velocity_drive(STILL),
 }
 DRIVES |= {
-    f"{name}, remembering": drive.remembering("d", [Interval.point(F(1))] * len(MEMORY))
+    f"{name}, remembering": drive.remembering("d", [Interval.point(F(1))] * len(module.MEMORY))
     for name, drive in DRIVES.items()
 }
 EVERY = pytest.mark.parametrize("drive", DRIVES.values(), ids=DRIVES)

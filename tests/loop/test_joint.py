@@ -6,8 +6,6 @@ The verdicts and rates were found by an independent program.
 from dataclasses import replace
 from fractions import Fraction
 
-import pytest
-
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.search.certify import Limits, certify
@@ -15,22 +13,13 @@ from nrs_design.search.method import Method
 from tests.proof.graphs import shape_of
 from tests.search.support import thesis_robot
 from tests.support import words_of
+from tests.tables import by_rows
 
 SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
 ANY_RATE = Limits(optimize_rate=False)
 
 
-@pytest.mark.parametrize(
-    ("Bt", "tolerance", "load", "rate"),
-    [
-        (BOTH, "0.02", None, 3.54),
-        (BOTH, "0.02", "1.213", 3.81),
-        (BOTH, "0.10", "1.213", 2.0),
-        (BOTH, "0.10", None, None),
-        (BOTH, "0.16", None, None),
-        (INSERTION, "0.38", None, None),
-    ],
-)
+@by_rows("Bt", "tolerance", "load", "rate")
 def test_tolerances_that_are_proved_while_contact_is_lost(Bt, tolerance, load, rate):
     system = thesis_robot(SOFT, Bt, "0.01", tolerance, load)
     found = certify(system, limits=Limits(optimize_rate=rate is not None)).evidence

@@ -6,14 +6,7 @@ import pytest
 
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop import located
-from nrs_design.loop.located import (
-    ConstantParameter,
-    LocatedMode,
-    Period,
-    Spot,
-    constant_sets,
-    spot_of,
-)
+from nrs_design.loop import located as module
 from nrs_design.proof.constant import corner_weights, system_at
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.switching import FixedParameter
@@ -33,7 +26,7 @@ QUICK = Limits(optimize_rate=False, more=False)
 
 def parameter(symbol, contact=None):
     said = FixedParameter(symbol, Fraction(0), Fraction(1))
-    return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"), contact)
+    return module.ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"), contact)
 
 
 def closed(*changes):
@@ -50,9 +43,9 @@ def sets_of(names, *parameters):
     for name in names:
         head, where, *labels = name.split("/")
         own = [p for p in parameters if p.contact in (None, where)]
-        spot = Spot.named(head, where) + spot_of(labels, (), own)
-        items.append(LocatedMode(head, spot, where, Period([[1]])))
-    return [*constant_sets(items, parameters)]
+        spot = module.Spot.named(head, where) + module.spot_of(labels, (), own)
+        items.append(module.LocatedMode(head, spot, where, module.Period([[1]])))
+    return [*module.constant_sets(items, parameters)]
 
 
 def test_a_mode_is_the_same_at_the_ends_of_what_it_does_not_touch():

@@ -17,6 +17,7 @@ from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import parse_spec
 from nrs_design.spec.misses import automaton_of
 from tests.loop.support import sampled
+from tests.tables import by_rows
 
 TEXT = """\
 kind: switched-system
@@ -58,10 +59,7 @@ def test_signals_are_the_words_of_the_rule():
     assert said == expected
 
 
-@pytest.mark.parametrize(
-    ("most", "of", "stable"),
-    [(1, 2, False), (1, 3, True), (2, 5, True), (2, 4, False), (3, 9, True)],
-)
+@by_rows("most", "of", "stable")
 def test_one_state_decides_by_hand(most, of, stable):
     """0.5 and 2.5: as many misses as allowed in every window, so 0.5^(of - most) 2.5^most."""
     assert (0.5 ** (of - most) * 2.5**most < 1) is stable

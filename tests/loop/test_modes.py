@@ -16,6 +16,7 @@ from nrs_design.loop.modes import position_mode, to_force_coordinates, velocity_
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
 from tests.loop.support import LOOP, MOTION, objects, polynomial, positive, stable
+from tests.tables import by_rows
 
 F = Fraction
 # 752.69 N/m at 0.24 m, the stiffness in the printed matrices (43.355 N m/rad).
@@ -152,13 +153,6 @@ class TestOwnStates:
         assert polynomial(rows) == list(np.polyadd(objects(*LOOP.denominator, 0), loop))
 
 
-@pytest.mark.parametrize(
-    ("rates", "expected"),
-    [
-        ({2: 5, 3: 5}, [[1, 2, 0, 0], [3, 4, 0, 0], [0, 0, -5, 0], [0, 0, 0, -5]]),
-        ({1: 7}, [[1, 0, 2], [0, -7, 0], [3, 0, 4]]),
-        ({}, [[1, 2], [3, 4]]),
-    ],
-)
+@by_rows("rates", "expected")
 def test_idle_states_decay_alone(rates, expected):
     assert with_idle([[F(1), F(2)], [F(3), F(4)]], rates) == expected

@@ -10,18 +10,11 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_certification, run_design
 from nrs_design.spec import read_spec
 from tests.support import ROOT, run
+from tests.tables import entry
 
 SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 # Powers of the distance by which a number is multiplied, and its unit there.
-CARRIED = {
-    "rad/s/rpm": (1, "m/s/rpm"),
-    "rpm*s/rad": (-1, "rpm*s/m"),
-    "rad/s": (1, "m/s"),
-    "N*m*s/rad": (-2, "N*s/m"),
-    "N*m/rad": (-2, "N/m"),
-    "kg*m^2": (-2, "kg"),
-    "N*m": (-1, "N"),
-}
+CARRIED = entry(__file__, "carried")
 STATES = {"m": 1, "m/s": 1, "N": -1}
 
 

@@ -9,15 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.verify import verify
+from nrs_design.controllers import laws as module
 from nrs_design.controllers import step_law
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws import (
-    Admittance,
-    DiscreteLaw,
-    IntegralForce,
-    PositionControl,
-    ProportionalForce,
-)
 from nrs_design.controllers.operations import Operation
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.sensor import DiscreteLowPass
@@ -35,37 +29,40 @@ TAU, KM = Fraction("0.0351"), Fraction("4.8417e-4")
 MOTION = StepFrame(Fraction("117359.43"), Fraction(1_030_000))
 
 
-def _frame(delay: int, *laws: DiscreteLaw) -> Frame:
+def _frame(delay: int, *laws: module.DiscreteLaw) -> Frame:
     return frame_of(PERIOD, MOTION, laws or (_law("1.04"),), delay, TAU)
 
 
-def _force(Kf: Fraction) -> DiscreteLaw:
-    return DiscreteLaw(ProportionalForce, {"Kf": Kf})
+def _force(Kf: Fraction) -> module.DiscreteLaw:
+    return module.DiscreteLaw(module.ProportionalForce, {"Kf": Kf})
 
 
-POSITION = DiscreteLaw(PositionControl, {})
+POSITION = module.DiscreteLaw(module.PositionControl, {})
 
 
-def _law(Bt: str) -> DiscreteLaw:
+def _law(Bt: str) -> module.DiscreteLaw:
     a = np.exp(-float(Bt) * 0.002 / 0.01)
-    return Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
+    return module.Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
 
 
 SINGLE = (
     (_law("1.04"),),
-    (Admittance.discrete(None, Fraction(3, 8), PERIOD), _force(Fraction(1, 50))),
-    (Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)),),
-    (Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)), POSITION),
+    (module.Admittance.discrete(None, Fraction(3, 8), PERIOD), _force(Fraction(1, 50))),
+    (module.Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)),),
+    (module.Admittance.discrete(Fraction(5, 8), Fraction(3, 16), PERIOD, Fraction(3, 2)), POSITION),
     (_force(Fraction(1, 50)), POSITION),
-    (DiscreteLaw(IntegralForce, {"Kf": Fraction(1, 50), "Ki_T": Fraction(1, 900)}), POSITION),
+    (
+        module.DiscreteLaw(module.IntegralForce, {"Kf": Fraction(1, 50), "Ki_T": Fraction(1, 900)}),
+        POSITION,
+    ),
 )
 
 
-def rounded(law: DiscreteLaw) -> DiscreteLaw:
-    return DiscreteLaw(law.law, {name: to_float32(n) for name, n in law.numbers.items()})
+def rounded(law: module.DiscreteLaw) -> module.DiscreteLaw:
+    return module.DiscreteLaw(law.law, {name: to_float32(n) for name, n in law.numbers.items()})
 
 
-STREAMED = ((_law("1.04"),), (Admittance.discrete(None, Fraction(3, 8), PERIOD),))
+STREAMED = ((_law("1.04"),), (module.Admittance.discrete(None, Fraction(3, 8), PERIOD),))
 
 
 @pytest.mark.parametrize("order", [0, 2])
@@ -150,15 +147,15 @@ def test_what_rounds_an_error_again_is_counted():
 
 SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 CERTIFICATE = ROOT / "reports/soft-tissue-sampled.cert.json"
-MOVING = Admittance.discrete(Fraction(1), Fraction(0), Fraction(1))
-FORCE = ProportionalForce(Fraction(1)).discretize(Fraction(1), "exact")
-HOLDING = PositionControl().discretize(Fraction(1), "exact")
+MOVING = module.Admittance.discrete(Fraction(1), Fraction(0), Fraction(1))
+FORCE = module.ProportionalForce(Fraction(1)).discretize(Fraction(1), "exact")
+HOLDING = module.PositionControl().discretize(Fraction(1), "exact")
 
 
 @pytest.fixture
 def alter(monkeypatch):
     """Put other operations in the place of those of the motion controller, or of an admittance."""
-    given, parts = step_law.motion_operations, Admittance.parts
+    given, parts = step_law.motion_operations, module.Admittance.parts
 
     def put(where, change):
         if where == "motion":
@@ -166,7 +163,7 @@ def alter(monkeypatch):
                 step_law, "motion_operations", lambda *a, **b: change([*given(*a, **b)])
             )
         else:
-            monkeypatch.setattr(Admittance, "parts", lambda *a, **b: altered(parts(*a, **b)))
+            monkeypatch.setattr(module.Admittance, "parts", lambda *a, **b: altered(parts(*a, **b)))
         list_law.cache_clear()
 
         def altered(found):
@@ -233,7 +230,7 @@ def test_terms_are_counted_whatever_the_numbers():
 
 
 def test_what_the_loop_has_not_is_no_state_of_it():
-    sprung = Admittance.discrete(Fraction(1), Fraction(1), Fraction(1), Fraction(1))
+    sprung = module.Admittance.discrete(Fraction(1), Fraction(1), Fraction(1), Fraction(1))
     listed = list_law(0, kinds_of([sprung]))
     assert {*listed.law.following} - {*listed.following} == {"commanded"}
     assert "T v" not in listed.all_counts
@@ -260,7 +257,7 @@ def test_a_velocity_that_changes_its_sign_is_rounded_as_much():
     values = {"Km": Fraction(1, 2000)}
     a, sizes = Fraction(3, 7), []
     for sign in (1, -1):
-        law = Admittance.discrete(sign * a, Fraction(1), Fraction(1, 500))
+        law = module.Admittance.discrete(sign * a, Fraction(1), Fraction(1, 500))
         frame = frame_of(Fraction(1, 500), CONTROLLER, (law,), 0, Fraction("0.0351"))
         row = len(frame.states) + [*frame.roundings].index("a vm")
         sizes.append(frame.rows(law, 0, values)[row][frame.states.index("vm [rad/s]")])

@@ -17,20 +17,11 @@ from nrs_design.search.certify import Limits, certify
 from tests.loop.support import assembled, sampled
 from tests.proof.graphs import shape_of
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+from tests.tables import by_rows, entry, spec_text
 
 SAMPLED = "{period: 2 ms, delay: 0}"
 OLDER = "{period: 2 ms, delay: [0, 1]}"
-TOLERANCE = (
-    (
-        "gain: 4.8417e-4 rad/s/rpm",
-        "gain: {nominal: 4.8417e-4 rad/s/rpm, "
-        "range: [4.744866e-4 rad/s/rpm, 4.938534e-4 rad/s/rpm]}",
-    ),
-    (
-        "time_constant: 0.0351 s",
-        "time_constant: {nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}",
-    ),
-)
+TOLERANCE = entry(__file__, "tolerance")
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
 SPRUNG = (BT, f"Kt: 0.5 N*m/rad\n    {BT}")
 
@@ -167,14 +158,7 @@ def test_one_period_written_twice_is_one_and_a_latency_of_nothing_is_none():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("sampling", "verdict", "least"),
-    [
-        ("{period: 2 ms, outer_period: 0.1 ms, delay: 0}", Verdict.PROVED, "1"),
-        ("{period: 2 ms, outer_period: 4 ms, delay: 0}", Verdict.PROVED, "0.7"),
-        ("{period: 2 ms, outer_period: 10 ms, delay: 3}", Verdict.REFUTED, None),
-    ],
-)
+@by_rows("sampling", "verdict", "least", verdict=Verdict)
 def test_two_periods_of_the_thesis_robot(sampling, verdict, least):
     """Insertion and withdrawal in soft tissue, switched at will, contact losable."""
     system = sampled(sampling)
@@ -280,20 +264,7 @@ def test_a_robot_that_closes_the_loop_of_the_thesis_has_its_modes():
     assert others == [one, one]
 
 
-TWO_TISSUES = """\
-kind: interaction-design
-name: two-tissues
-title: Torques, and two tissues in turn
-torque_interface: {inertia: 0.2 kg*m^2, friction: 0.5 N*m*s/rad}
-limits: {velocity: 8 deg/s, torque: 3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: 10 N*m/rad}
-  hard: {model: elastic, stiffness: 60 N*m/rad}
-controllers:
-  heavy: {type: torque-impedance, environment: soft, contacts: [soft, hard], stiffness: 20 N*m/rad,
-          damping: 6 N*m*s/rad, inertia_ratio: 3}
-switching: arbitrary
-contact: kept"""
+TWO_TISSUES = spec_text("two-tissues")
 
 
 def test_another_tissue_may_be_touched_within_a_period():
@@ -332,14 +303,7 @@ def test_torques_that_take_contact_for_granted_say_so(contact, kept):
     assert ("loss of contact" in omitted(system.assumptions)) is kept
 
 
-@pytest.mark.parametrize(
-    ("drive", "tissue", "bounded"),
-    [
-        ("position_interface: {time_constant: 0.5 ms}", "elastic", ["force"]),
-        ("position_interface: {time_constant: 0.5 ms}", "kelvin-voigt", []),
-        ("velocity_interface: {time_constant: 0.5 ms}", "kelvin-voigt", ["force", "velocity"]),
-    ],
-)
+@by_rows("drive", "tissue", "bounded")
 def test_no_bound_on_a_velocity_that_jumps_after_the_sample(drive, tissue, bounded):
     """At a sample it has decayed to exp(-4) of what it was: no such bound is about the robot."""
     damping = ", damping: 1 N*m*s/rad" if tissue == "kelvin-voigt" else ""

@@ -19,6 +19,7 @@ from nrs_design.work import Allowance
 from tests.loop.support import loaded
 from tests.proof.systems import pushed_away_in_steps
 from tests.support import ROOT, words_of
+from tests.tables import entry
 
 KM, TAU, PERIOD = 4.8417e-4, 0.0351, Fraction(1, 500)
 SAMPLED = "switching: arbitrary\nsampling: {period: 2 ms, delay: 1}"
@@ -28,14 +29,7 @@ IMPEDANCE = (
     .replace("switching: arbitrary", SAMPLED)
     .replace("initial_force: 0.5 N*m", "initial_force: largest")
 )
-RANGES = {
-    "{nominal: 4.8417e-4 rad/s/rpm, range: [4.744866e-4 rad/s/rpm, 4.938534e-4 rad/s/rpm]}": (
-        "4.8417e-4 rad/s/rpm"
-    ),
-    "{nominal: 0.0351 s, range: [0.034398 s, 0.035802 s]}": "0.0351 s",
-    "  bandwidth: 2 Hz": "  bandwidth: 2 Hz\n  command: 2000 rpm",
-    "{decay_rate: 5 1/s, delay: 2 ms}": "{initial_force: largest}",
-}
+RANGES = entry(__file__, "ranges")
 FORCE = (ROOT / "specs/neuroboscope/force-limit-pi-sampled.nrs.yaml").read_text("utf-8")
 for old, new in RANGES.items():
     FORCE = FORCE.replace(old, new)
@@ -169,8 +163,8 @@ def test_the_region_of_a_scalar_loop_is_nearly_that_of_its_motions():
 
 
 def test_what_is_taken_for_granted():
-    for kind, said in (("impedance", "2000 rpm, or at any"), ("force", "the integral of the")):
+    for kind, words in (("impedance", "2000 rpm, or at any"), ("force", "the integral of the")):
         system, _, _ = loop(kind)
-        assert said in words_of(system)[-1]
+        assert words in words_of(system)[-1]
         assert "saturation only where a statement says so" in " ".join(words_of(system))
         assert "friction and saturation are not" not in " ".join(words_of(system))

@@ -9,6 +9,7 @@ import pytest
 from nrs_design.errors import NrsDesignError
 from tests.loop.support import assembled, outside
 from tests.oracle.plant import draw, step
+from tests.tables import entry
 
 # Shares of an entry: what single precision and enclosures are off, and what an error makes.
 CLOSE, SEEN = 1e-6, 1e-4
@@ -242,22 +243,7 @@ def test_maps_of_drawn_loops_lie_between_the_modes(seeds):
 
 
 # Features that act on each other within a period.
-TOGETHER = {
-    "load": ["losable", "load"],
-    "load, force": ["losable", "load", "force"],
-    "load, mixture": ["losable", "load", "decay"],
-    "positions, mixture": ["losable", "placed", "decay"],
-    "memory": ["creep"],
-    "memory, load": ["creep", "load"],
-    "memory, positions": ["creep", "placed"],
-    "memory, mixture": ["creep", "decay"],
-    "integral": ["integral"],
-    "integral, positions": ["integral", "placed"],
-    "rounds": ["turns", "losable"],
-    "rounds, lags": ["turns", "lags", "spring"],
-    "dead time": ["dead", "force"],
-    "velocities, spring": ["losable", "streamed", "spring"],
-}
+TOGETHER = entry(__file__, "together")
 
 
 @pytest.mark.parametrize("name", TOGETHER)

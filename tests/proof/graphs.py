@@ -3,22 +3,11 @@
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
+from nrs_design.proof import steps as facts
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import MODES, Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
-from nrs_design.proof.steps import (
-    FREE,
-    LOST,
-    ROUNDING,
-    Acting,
-    Stays,
-    by_fact,
-    forms_of_one,
-    grain_of,
-    multiplier_names,
-    steps_of,
-)
 from nrs_design.proof.system import SwitchedSystem
 
 __all__ = [
@@ -59,7 +48,7 @@ def one_form(
     """
     nodes = [Node(MODES, Q)]
     if lost:
-        nodes.append(Node(FREE, undeflected(Q, system.order, degree)))
+        nodes.append(Node(facts.FREE, undeflected(Q, system.order, degree)))
     multipliers = _multipliers(system, crossings, roundings)
     found = tuple(Multiplier(fact, value) for fact, value in multipliers)
     return FormsOnGraph(tuple(nodes), log2, rate, degree, found, vanishing)
@@ -68,17 +57,17 @@ def one_form(
 def _multipliers(
     system: SwitchedSystem, crossings: Sequence[int], roundings: Sequence[int]
 ) -> list[tuple[str, int]]:
-    names = multiplier_names(system) if crossings else ()
+    names = facts.multiplier_names(system) if crossings else ()
     return [
         *zip(names, crossings, strict=True),
-        *((f"{ROUNDING} {k}", value) for k, value in enumerate(roundings, 1)),
+        *((f"{facts.ROUNDING} {k}", value) for k, value in enumerate(roundings, 1)),
     ]
 
 
 def common_quadratic(
     Q: Matrix, log2: int, rate: Fraction, roundings: Sequence[int] = ()
 ) -> FormsOnGraph:
-    found = (Multiplier(f"{ROUNDING} {k}", m) for k, m in enumerate(roundings, 1))
+    found = (Multiplier(f"{facts.ROUNDING} {k}", m) for k, m in enumerate(roundings, 1))
     return FormsOnGraph((Node(MODES, Q),), log2, rate, multipliers=tuple(found))
 
 
@@ -101,13 +90,15 @@ def in_turns(
     for k, Q in enumerate(forms):
         nodes.append(Node(f"{MODES} {k}", Q))
         if lost:
-            nodes.append(Node(f"{FREE} {k}", undeflected(Q, system.order)))
+            nodes.append(Node(f"{facts.FREE} {k}", undeflected(Q, system.order)))
     width = len(nodes) // count
     for k in range(count):
         first = (k + 1) % count * width
-        named = [(f"{ROUNDING} {i}", m) for i, m in enumerate(roundings[k] if roundings else (), 1)]
+        named = [
+            (f"{facts.ROUNDING} {i}", m) for i, m in enumerate(roundings[k] if roundings else (), 1)
+        ]
         if crossings and crossings[k]:
-            named += zip(multiplier_names(system), crossings[k], strict=True)
+            named += zip(facts.multiplier_names(system), crossings[k], strict=True)
         multipliers += [
             Multiplier(fact, value, first + i) for fact, value in named for i in range(width)
         ]
@@ -122,7 +113,7 @@ def mode_quadratic(
     pieces: int = 1,
 ) -> FormsOnGraph:
     nodes = tuple(Node(name, Q) for name, Q in functions)
-    return FormsOnGraph(nodes, log2, rate, stays=Stays(leaving, pieces))
+    return FormsOnGraph(nodes, log2, rate, stays=facts.Stays(leaving, pieces))
 
 
 def scalars(*values: int, rate: Fraction | str = Fraction(1, 2), **stays: object) -> FormsOnGraph:
@@ -138,9 +129,9 @@ def conewise_modes(
     multipliers: Sequence[int],
 ) -> FormsOnGraph:
     """The function of a state is that of the mode that takes the next step."""
-    nodes = [Node(MODES, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
+    nodes = [Node(MODES, Q) for _, Q in touching] + [Node(facts.FREE, R) for _, R in flying]
     edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
-    lost = (Multiplier(LOST, m, k) for k, m in enumerate(multipliers, len(touching)))
+    lost = (Multiplier(facts.LOST, m, k) for k, m in enumerate(multipliers, len(touching)))
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
 
 
@@ -161,7 +152,7 @@ def shape_of(evidence: AbstractEvidence | None) -> str | None:
 
 def forms_of_steps(
     system: SwitchedSystem,
-    acting: Acting,
+    acting: facts.Acting,
     function: tuple[Matrix, int],
     keeps: Fraction,
     crossings: Sequence[int] = (),
@@ -169,6 +160,6 @@ def forms_of_steps(
 ):
     """Return what one function must fulfil in steps, with where it is."""
     Q, log2 = function
-    names = multiplier_names(system) if crossings else ()
-    steps = steps_of(system, acting, grain_of(keeps), lost=True)
-    return forms_of_one(steps, Q, keeps, by_fact(names, crossings, roundings), log2)
+    names = facts.multiplier_names(system) if crossings else ()
+    steps = facts.steps_of(system, acting, facts.grain_of(keeps), lost=True)
+    return facts.forms_of_one(steps, Q, keeps, facts.by_fact(names, crossings, roundings), log2)

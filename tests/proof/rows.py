@@ -84,18 +84,8 @@ def system_in(case: dict[str, Any]) -> SwitchedSystem:
         other = {key: value for key, value in said.items() if key != "modes"}
         system = _changed(SwitchedSystem, systems.family(*matrices), other)
     else:
-        system = _built(said if isinstance(said, list) else [said])
+        system = systems.built(said)
     return _changed(SwitchedSystem, system, case["with"])
-
-
-def _built(said: list[Any]) -> SwitchedSystem:
-    """Return what a function of `systems.py` makes of arguments; of lists, what is made first."""
-    name, *arguments = said
-    times = {time.value: time for time in Time}
-    made_first = (
-        _built(item) if isinstance(item, list) else times.get(item, item) for item in arguments
-    )
-    return getattr(systems, name)(*made_first)
 
 
 def evidence_in(case: dict[str, Any]) -> AbstractEvidence:

@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from itertools import product
+from pathlib import Path
 from random import Random
+from typing import Any
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.loop.modes import velocity_mode
@@ -27,6 +29,7 @@ from nrs_design.search.method import Method
 from nrs_design.work import Allowance
 from tests.proof.graphs import shape_of
 from tests.support import Entry, Rows, dayawansa_martin, family, matrix
+from tests.tables import table
 
 
 def oscillator(kbar: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
@@ -373,7 +376,7 @@ LAGGING = {
 }
 
 
-def bouncing_in_turns(damping: Entry = 0, *, rounded: bool = False) -> SwitchedSystem:
+def bouncing_in_turns(damping: Entry = 0, rounded: bool = False) -> SwitchedSystem:
     """The same, with a force that acts twice as much at every second step, and then not at all.
 
     Only at the steps in between the velocity decays.
@@ -461,84 +464,41 @@ def crowded(time: Time, *, lost: bool = True, pulled: bool = True) -> SwitchedSy
     )
 
 
-SYSTEMS = {
-    "mode-polynomial": lossy_network,
-    "common-quadratic": lambda: dayawansa_martin(5),
-    "common-polynomial": lambda: dayawansa_martin(6),
-    "common-polynomial, discrete": lambda: ando_shih("0.72"),
-    "conewise-mode-quadratic": bouncing_in_steps,
-    "conewise-polynomial": bouncing,
-    "conewise-quadratic": bouncing,
-    "conewise-quadratic, pulling": lambda: bouncing(1),
-    "conewise-quadratic, discrete": bouncing_in_steps,
-    "conewise-quadratic, pulling in steps": lambda: bouncing_in_steps(1),
-    "invariant-ellipsoid": lambda: pushed(bouncing()),
-    "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
-    "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
-    "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
-    "invariant-ellipsoid, pulling in steps": lambda: pushed(bouncing_in_steps(1)),
-    "offset-ellipsoid": lambda: pushed(bouncing()),
-    "offset-ellipsoid, pulling": lambda: pushed(bouncing(1)),
-    "offset-ellipsoid, in steps": lambda: pushed(bouncing_in_steps()),
-    "offset-ellipsoid, pulling in steps": lambda: pushed(bouncing_in_steps(1)),
-    "no-common-quadratic": lambda: dayawansa_martin(6),
-    "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
-    "block-triangular": degenerate_dual,
-    "saturated-ellipsoid": saturating,
-    "saturated-ellipsoid, kept": lambda: kept(saturating()),
-    "saturated-ellipsoid, scalar": pushed_away,
-    "saturated-ellipsoid, scalar in steps": pushed_away_in_steps,
-    "saturated-ellipsoid, in steps": saturating_in_steps,
-    "growing-sequence, mode": lambda: family([[0, 1], [-1, 0]]),
-    "growing-sequence, free": drifting,
-    "growing-sequence, contact": juggling,
-    "growing-sequence, contact in time": sucking_in,
-    "growing-sequence, contact in steps": sucking_in_steps,
-    "growing-sequence, pulling": lambda: sucking_in_steps("1/2"),
-    "growing-sequence, among modes": juggling_among_modes,
-    "growing-sequence, contact in turns": juggling_in_turns,
-    "growing-sequence, average": shears,
-    "growing-sequence, period": branicky,
-    "growing-sequence, steps": lambda: golden("0.6181"),
-    "mode-quadratic, dwell": lambda: geromel_colaneri("2.76"),
-    "mode-quadratic, one way": lambda: dayawansa_martin(
-        12, switching=Switching(transitions=(("m0", "m1"),))
-    ),
-    "mode-quadratic, rectangular": rectangular,
-    "mode-quadratic, discrete": lambda: ando_shih("0.99"),
-    "mode-quadratic, steps": slow_switching_in_steps,
-    "mode-quadratic, left": lambda: must_leave(2),
-    "mode-quadratic, left in time": lambda: must_leave_in_time("1.2"),
-    "mode-quadratic, two ways": lambda: two_ways(3),
-    "growing-sequence, left": lambda: must_leave(4),
-    "growing-sequence, two ways": lambda: two_ways(5),
-    "periodic-quadratic": bouncing_in_turns,
-    "periodic-quadratic, pulling": lambda: bouncing_in_turns(1),
-    "periodic-quadratic, rounding": lambda: bouncing_in_turns(rounded=True),
-    "periodic-quadratic, kept": lambda: replace(
-        bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2"))
-    ),
-    "periodic-quadratic, missed": lambda: replace(
-        family([["1/2"]], [["3/2"]], time=Time.DISCRETE),
-        clock=Clock(2, ("m0",), ((0, 1), (0, NOWHERE))),
-    ),
-    "periodic-quadratic, stays": lambda: sheared_in_stays(3),
-    "growing-sequence, stays": lambda: sheared_in_stays(2),
-    "growing-sequence, in turns": lambda: doubled_in_turns(3),
-    "constants-quadratic": lambda: companion("0.9", "0.9"),
-    "constants-quadratic, continuous": two_springs,
-    "growing-sequence, value": lambda: hidden_value(3),
-    "growing-sequence, value in steps": lambda: hidden_value(3, Time.DISCRETE),
-    "growing-sequence, average at a value": hidden_shears,
-    "growing-sequence, period at a value": lambda: hidden_shears(Time.DISCRETE),
-}
-METHODS = {
-    "conewise-mode-quadratic": Method.CONEWISE_MODE_QUADRATIC,
-    "conewise-polynomial": Method.CONEWISE_POLYNOMIAL,
-    "common-polynomial, discrete": Method.POLYNOMIAL,
-    "mode-polynomial": Method.MODE_POLYNOMIAL,
-    "growing-sequence, average": Method.MIXTURE,
-}
+def one_way() -> SwitchedSystem:
+    return dayawansa_martin(12, switching=Switching(transitions=(("m0", "m1"),)))
+
+
+def circling() -> SwitchedSystem:
+    return family([[0, 1], [-1, 0]])
+
+
+def missed() -> SwitchedSystem:
+    system = family([["1/2"]], [["3/2"]], time=Time.DISCRETE)
+    return replace(system, clock=Clock(2, ("m0",), ((0, 1), (0, NOWHERE))))
+
+
+def in_kept_contact(system: SwitchedSystem) -> SwitchedSystem:
+    return replace(system, contact=None)
+
+
+def turns_in_kept_contact() -> SwitchedSystem:
+    clock = Clock(2, ("push 1", "push 2"))
+    return replace(bouncing_in_turns(), contact=None, clock=clock)
+
+
+def built(said: str | list[Any]) -> SwitchedSystem:
+    """Return what a function of this file makes of arguments; of lists, what is made first."""
+    name, *arguments = [said] if isinstance(said, str) else said
+    times = {time.value: time for time in Time}
+    made_first = (
+        built(item) if isinstance(item, list) else times.get(item, item) for item in arguments
+    )
+    return globals()[name](*made_first)
+
+
+# Of each example, a system and maybe the method that finds its evidence.
+EXAMPLES = table(Path(__file__).with_suffix(".yaml"))
+SYSTEMS = {name: partial(built, said) for name, said in EXAMPLES["systems"].items()}
 
 
 @cache
@@ -551,7 +511,9 @@ def genuine(example: str) -> tuple[SwitchedSystem, AbstractEvidence]:
             evidence, _ = first_accepted(search, system)
         assert evidence is not None
         return system, evidence
-    found = certify(system, METHODS.get(example, Method.AUTO), Limits(optimize_rate=False))
+    found = certify(
+        system, Method(EXAMPLES["methods"].get(example, "auto")), Limits(optimize_rate=False)
+    )
     return system, next(item for item in found.statements if shape_of(item) == kind)
 
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from fractions import Fraction
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -15,15 +14,8 @@ from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.systems import (
-    bouncing_in_turns,
-    doubled_in_turns,
-    family,
-    matrix,
-    pushed,
-    sheared_in_stays,
-)
-from tests.tables import rows
+from tests.proof import systems
+from tests.tables import by_rows
 
 ROUND = Clock(3, ("a", "b"))
 # At most one of any three missed: what may follow after none, after one, and after a step more.
@@ -36,7 +28,7 @@ def signal(text: str) -> list[tuple[str, Fraction]]:
     return [(name, Fraction(count)) for name, count in (item.split(":") for item in text.split())]
 
 
-@pytest.mark.parametrize(("clock", "text", "keeps"), rows(__file__, "test_signals"))
+@by_rows("clock", "text", "keeps")
 def test_signals(clock, text, keeps):
     known = {"round": ROUND, "misses": ONE_OF_THREE, "stays": STAYS}[clock]
     assert keeps_turns(known, signal(text)) is keeps
@@ -58,10 +50,10 @@ def test_against_every_step_written_down(steps, length):
 
 
 def test_what_is_in_force_at_a_step():
-    system = pushed(bouncing_in_turns(1, rounded=True))
+    system = systems.pushed(systems.bouncing_in_turns(1, rounded=True))
     # What a push makes the arithmetic round, too: its entry must not be taken for a rounding's.
     (item,) = system.roundings
-    wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
+    wide = tuple(systems.matrix([[*row.fractions()[0], 7]]) for row in item.rows)
     system = replace(system, roundings=(replace(item, rows=wide),))
     first, other = (on_turn(system, system.clock, kind) for kind in (0, 1))
     assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
@@ -79,7 +71,7 @@ def test_what_is_in_force_at_a_step():
 
 
 def test_the_parts_of_a_rounding_are_those_of_their_modes():
-    system = bouncing_in_turns(rounded=True)
+    system = systems.bouncing_in_turns(rounded=True)
     (item,) = system.roundings
     marked = tuple(replace(row, numerators=((k, 0),)) for k, row in enumerate(item.rows, start=1))
     system = replace(system, roundings=(replace(item, rows=marked, columns=item.columns),))
@@ -89,10 +81,12 @@ def test_the_parts_of_a_rounding_are_those_of_their_modes():
 
 
 def test_kept_contact_has_no_free_modes():
-    stays = sheared_in_stays(2)
+    stays = systems.sheared_in_stays(2)
     parts = [on_turn(stays, stays.clock, kind) for kind in stays.clock.kinds]
     assert [[mode.name for mode in part.modes] for part in parts] == [["m0"], ["m1"], ["m2"]]
-    system = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
+    system = replace(
+        systems.bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2"))
+    )
     assert on_turn(system, system.clock, 1).contact is None
 
 
@@ -100,13 +94,13 @@ def test_a_signal_out_of_turn_refutes_nothing():
     """Doubling at every third step grows by 9/8, at every fourth it does not."""
     steps = (("m0", Fraction(1)), ("m1", Fraction(2)))
     growth = GrowingSequence(steps, 6)
-    assert growth.find_fault(doubled_in_turns(3)) is None
-    assert "not its turn" in growth.find_fault(doubled_in_turns(4))
-    assert growth.find_fault(replace(doubled_in_turns(4), clock=None)) is None
+    assert growth.find_fault(systems.doubled_in_turns(3)) is None
+    assert "not its turn" in growth.find_fault(systems.doubled_in_turns(4))
+    assert growth.find_fault(replace(systems.doubled_in_turns(4), clock=None)) is None
     alone = GrowingSequence((("m0", Fraction(3)),), 6)
-    assert "not its turn" in alone.find_fault(doubled_in_turns(3))
+    assert "not its turn" in alone.find_fault(systems.doubled_in_turns(3))
     late = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
-    assert "growth" in late.find_fault(doubled_in_turns(4))
+    assert "growth" in late.find_fault(systems.doubled_in_turns(4))
 
 
 def test_what_an_automaton_allows():
@@ -123,7 +117,7 @@ def test_what_an_automaton_allows():
 
 
 def missing(hit: str, miss: str) -> SwitchedSystem:
-    return replace(family([[hit]], [[miss]], time=Time.DISCRETE), clock=ONE_OF_THREE)
+    return replace(systems.family([[hit]], [[miss]], time=Time.DISCRETE), clock=ONE_OF_THREE)
 
 
 def forms_of(values: tuple[int, int, int], rate: str) -> FormsOnGraph:

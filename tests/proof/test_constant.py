@@ -10,20 +10,9 @@ from nrs_design.proof.constant import find_odd_shares, name_between, system_at, 
 from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from tests.proof.systems import PAIR, family, hidden_value
+from tests.tables import by_rows, spec_text
 
-TEXT = """\
-kind: switched-system
-name: s
-time: continuous
-parameters:
-  k: {nominal: 3, range: [1, 5]}
-  m: {nominal: 1, range: ["1/2", 2], varies: false}
-modes:
-  - {name: a, A: [[-1 - k, 2*m], [0, -1]]}
-  - {name: b, A: [[-1, m], [0, -1]]}
-  - {name: c, A: [[-1, 0], [1, -1]]}
-switching: RULES
-"""
+TEXT = spec_text("constant-share")
 
 
 def ends(*sets):
@@ -142,19 +131,7 @@ def test_a_value_that_is_none_has_no_system():
         system_at(assembled(), ())
 
 
-@pytest.mark.parametrize(
-    ("corners", "enclosed", "found"),
-    [
-        # What is enclosed at each end is so between them.
-        (["45", "01", "23"], ["02", "13"], ["02 13"]),
-        (["45", "01", "23"], [], []),
-        # At one end alone, in sets of two sizes, at two places, and with a part that has no ends.
-        (["01", "23"], ["02"], [""]),
-        (["01", "23"], ["02", "134"], [""]),
-        (["01", "23"], ["02", "31"], [""]),
-        (["01"], ["02", "13"], [""]),
-    ],
-)
+@by_rows("corners", "enclosed", "found")
 def test_enclosures_at_a_value(corners, enclosed, found):
     def named(*sets):
         return tuple(tuple(f"m{k}" for k in one) for one in sets)

@@ -10,26 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from nrs_design.proof.enclosure import (
-    ball_around,
-    balls,
-    characteristic_sign,
-    eigenvalues,
-    eigenvector,
-    exponential,
-    fraction_of,
-    lower_integers,
-    overlap,
-    precision,
-    unit_coordinates,
-)
+from nrs_design.proof import enclosure
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
 from tests.support import ends_soon
+from tests.tables import by_rows
 
 
 def lower(rows):
-    return lower_integers(arb_mat(rows))
+    return enclosure.lower_integers(arb_mat(rows))
 
 
 @given(
@@ -112,16 +101,16 @@ def test_tiny_balls_count_as_their_bound_and_not_as_nothing():
 
 
 def test_the_enclosure_is_not_a_point():
-    with precision(64):
-        E = exponential(RationalMatrix(((1, 2), (3, 4))), Fraction(1), Fraction(1))
+    with enclosure.precision(64):
+        E = enclosure.exponential(RationalMatrix(((1, 2), (3, 4))), Fraction(1), Fraction(1))
     assert not E[0, 0].is_exact()
 
 
 @pytest.mark.parametrize(("begin", "end"), [(0, 2), (1, 3)])
 def test_the_enclosure_of_a_range_is_tight(begin, end):
     """Of ``exp(t)``, within one unit in a million."""
-    with precision():
-        E = exponential(RationalMatrix(((1,),)), Fraction(begin), Fraction(end))[0, 0]
+    with enclosure.precision():
+        E = enclosure.exponential(RationalMatrix(((1,),)), Fraction(begin), Fraction(end))[0, 0]
         first, last = arb(begin).exp(), arb(end).exp()
         assert E.contains(first)
         assert E.contains(last)
@@ -129,17 +118,7 @@ def test_the_enclosure_of_a_range_is_tight(begin, end):
         assert E.upper() < last + 1e-6
 
 
-@pytest.mark.parametrize(
-    ("shift", "radius", "met"),
-    [
-        ([[0, 0], [0, 0]], "0", True),
-        ([[0, 0], [0, "1/4"]], "0", False),
-        ([["1/4", 0], [0, "-1/4"]], "1/4", True),
-        ([["1/4", 0], [0, "-1/4"]], "1/8", False),
-        ([[0, "3/8"], [0, 0]], "1/4", False),
-        ([[0, 0], ["-3/8", 0]], "1/4", False),
-    ],
-)
+@by_rows("shift", "radius", "met")
 def test_balls_meet_where_every_entry_does(shift, radius, met):
     M, S = (
         RationalMatrix(((1, 2), (3, 4))),
@@ -151,13 +130,13 @@ def test_balls_meet_where_every_entry_does(shift, radius, met):
             for rows in zip(M.fractions(), S.fractions(), strict=True)
         ]
     )
-    assert overlap(balls(M), moved, Fraction(radius)) is met
+    assert enclosure.overlap(enclosure.balls(M), moved, Fraction(radius)) is met
 
 
 def test_the_precision_is_set_back_after_an_error():
     before = ctx.prec
-    with pytest.raises(ZeroDivisionError), precision(77):
-        balls(RationalMatrix(((1,),), 0))
+    with pytest.raises(ZeroDivisionError), enclosure.precision(77):
+        enclosure.balls(RationalMatrix(((1,),), 0))
     assert ctx.prec == before
 
 
@@ -166,8 +145,8 @@ def test_exponentials_against_pade(entries, begin, width):
     """Those of SciPy (Al-Mohy and Higham 2009), at both ends and in the middle of the times."""
     A = RationalMatrix((tuple(entries[:2]), tuple(entries[2:])), 10)
     first, last = Fraction(begin, 10), Fraction(begin + width, 10)
-    with precision():
-        E = exponential(A, first, last)
+    with enclosure.precision():
+        E = enclosure.exponential(A, first, last)
         for t in (first, (first + last) / 2, last):
             known = expm(np.array(A.floats()) * float(t))
             for i in range(2):
@@ -178,52 +157,50 @@ def test_exponentials_against_pade(entries, begin, width):
 @given(st.lists(st.integers(-9, 9), min_size=9, max_size=9), st.integers(1, 9))
 def test_eigenvalues_add_up_to_the_trace_as_often_as_they_occur(entries, denominator):
     A = RationalMatrix(tuple(tuple(entries[k : k + 3]) for k in (0, 3, 6)), denominator)
-    found = eigenvalues(A)
+    found = enclosure.eigenvalues(A)
     assert len(found) == 3
     assert sum(found, start=acb(0)).overlaps(acb(fmpq(sum(entries[::4]), denominator)))
 
 
 def test_multiple_eigenvalues():
-    assert len(eigenvalues(RationalMatrix(((1, 0), (0, 1)), 2))) == 2
+    assert len(enclosure.eigenvalues(RationalMatrix(((1, 0), (0, 1)), 2))) == 2
 
 
-@pytest.mark.parametrize(
-    ("radius", "number", "sign"),
-    [(0, 3, 1), (0, 1, -1), (0, 2, 0), (0.5, 2.25, 0), (0.5, 1.75, 0), (0.5, 2.75, 1)],
-)
+@by_rows("radius", "number", "sign")
 def test_a_sign_of_the_characteristic_polynomial_is_certain(radius, number, sign):
     """Of ``z - 2``, with 2 off by no more than the radius."""
     M = arb_mat([[arb(2, radius)]])
-    assert characteristic_sign(M, Fraction(number)) == sign
+    assert enclosure.characteristic_sign(M, Fraction(number)) == sign
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "is_between"),
-    [(1, 3, True), (2.25, 3, False), (1, 1.75, False), (3, 4, False), (0, 1, False)],
-)
+@by_rows("low", "high", "is_between")
 def test_an_eigenvalue_is_between_two_signs_that_are_certain(low, high, is_between):
     M = arb_mat([[arb(2, 0.5)]])
-    assert (eigenvector(M, Fraction(low), Fraction(high)) is not None) is is_between
+    assert (enclosure.eigenvector(M, Fraction(low), Fraction(high)) is not None) is is_between
 
 
 def test_coordinates_in_which_a_form_is_round():
     """Forms of any size, nearly flat ones too; one that is not definite stays as it is."""
-    with precision():
+    with enclosure.precision():
         for rows in ([[4, 2], [2, 1 + 2**-40]], [[10**30, 0], [0, 1]], [[2, 1], [1, 3]]):
-            form = balls(RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows]))
-            T = unit_coordinates(form)
+            form = enclosure.balls(
+                RationalMatrix.from_rows([[Fraction(x) for x in row] for row in rows])
+            )
+            T = enclosure.unit_coordinates(form)
             around = T.transpose() * form * T
             assert all(T[i, j].is_exact() for i in range(2) for j in range(2))
             assert all(abs(around[i, j] - int(i == j)) < 1e-9 for i in range(2) for j in range(2))
         for rows in ([[1, 2], [2, 1]], [[0, 0], [0, 0]], [[1, 1], [1, 1]]):
-            assert unit_coordinates(balls(RationalMatrix(rows))) == arb_mat([[1, 0], [0, 1]])
+            assert enclosure.unit_coordinates(enclosure.balls(RationalMatrix(rows))) == arb_mat(
+                [[1, 0], [0, 1]]
+            )
         # Definite, but of a root that is not invertible for certain.
         wide = arb(0.85, 0.28)
         form = arb_mat([[arb(0.73), wide], [wide, arb(1.86)]])
-        assert unit_coordinates(form) == arb_mat([[1, 0], [0, 1]])
+        assert enclosure.unit_coordinates(form) == arb_mat([[1, 0], [0, 1]])
 
 
 def test_an_exact_ball_is_its_fraction():
     for number in (Fraction(3, 8), Fraction(-5), Fraction(0), Fraction(2**70 + 1, 2**90)):
-        with precision():
-            assert fraction_of(ball_around(number)) == number
+        with enclosure.precision():
+            assert enclosure.fraction_of(enclosure.ball_around(number)) == number

@@ -12,18 +12,10 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.search.certify import certify
 from tests.support import family
+from tests.tables import by_rows
 
 
-@pytest.mark.parametrize(
-    ("A", "time", "eigenvalue"),
-    [
-        ([[0, 1], [-1, 0]], Time.CONTINUOUS, "0 +- 1j"),
-        ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], Time.CONTINUOUS, "0"),
-        ([[1, 0], [0, -5]], Time.CONTINUOUS, "1"),
-        ([["1/2", 0], [0, -3]], Time.DISCRETE, "-3"),
-        ([["0.6", "0.8"], ["-0.8", "0.6"]], Time.DISCRETE, "0.6 +- 0.8j"),
-    ],
-)
+@by_rows("A", "time", "eigenvalue", time=Time)
 def test_worst_eigenvalue(A, time, eigenvalue):
     (mode,) = family(A, time=time).modes
     assert worst_eigenvalue(mode.A, time) == eigenvalue

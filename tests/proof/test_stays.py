@@ -17,11 +17,11 @@ from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
 from tests.proof.graphs import mode_quadratic, scalars
 from tests.proof.systems import family, left_within, resets_between
+from tests.tables import by_rows
 
 A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
 HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
 LONG = "the dwell time is too long for such large numbers"
-NOT_THOSE = "the modes that must be left are not those of the system"
 PIECES = "the stays are enclosed in too few or too many pieces"
 SWITCHES = "there are too many switches to check"
 RESETS = resets_between(("m0", "m1", [[1, 0], [0, 1]]), ("m1", "m0", [[1, 0], [0, 1]]))
@@ -46,24 +46,7 @@ def test_a_shift_is_added_to_the_diagonal():
 
 
 # exp(-2) is 0.1353...: one thousand decreases to a tenth of it, 7389 being exp(2) of it.
-@pytest.mark.parametrize(
-    ("given", "shown"),
-    [
-        ((-1, 0, 1, 1, 1000, 7389), True),
-        ((-1, 0, 1, 1, 1000, 7390), False),
-        # The rate takes away from the decay.
-        ((-2, 1, 1, 1, 1000, 7390), False),
-        # A reset to one half is worth a factor of four.
-        ((-1, 0, 1, 1, 1000, 29556, "1/2"), True),
-        ((-1, 0, 1, 1, 1000, 29557, "1/2"), False),
-        # Every time from one to the other counts, for decay the first, for growth the last.
-        ((-1, 0, "0.99", 1, 1000, 7389), False),
-        ((1, 0, 0, "0.01", 1000, 1000), False),
-        ((1, 0, 0, "0.01", 1021, 1000), True),
-        # exp(4) is 54.6, and exp(2) in the middle 7.39.
-        ((1, 0, 0, 2, 1000, 20), False),
-    ],
-)
+@by_rows("given", "shown")
 def test_the_form_of_a_stay_against_the_exponential(given, shown):
     entry, rate, begin, end, before, after, *gain = given
     source, target = (Mode(name, RationalMatrix.from_rows([[entry]])) for name in "ij")
@@ -152,16 +135,7 @@ def test_a_switch_at_once_may_not_raise_the_function(gain, rises):
     assert slow.find_fault(replace(system, switching=later)) is None
 
 
-@pytest.mark.parametrize(
-    ("dwell", "time", "fault"),
-    [
-        (4096, Time.CONTINUOUS, None),
-        (4097, Time.CONTINUOUS, "the dwell time is too long"),
-        (4097, Time.DISCRETE, "the dwell time is too long"),
-        (Fraction(3, 2), Time.DISCRETE, "the dwell time is not a whole number of steps"),
-        (Fraction(3, 2), Time.CONTINUOUS, None),
-    ],
-)
+@by_rows("dwell", "time", "fault", time=Time, dwell=Fraction)
 def test_dwell_times_within_the_limits(dwell, time, fault):
     system = family([["-1/2"]], [["-1/2"]], time=time)
     assert odd(replace(system, switching=Switching(Fraction(dwell)))) == fault
@@ -170,16 +144,7 @@ def test_dwell_times_within_the_limits(dwell, time, fault):
         assert odd(left, ("m0", "m1")) == fault
 
 
-@pytest.mark.parametrize(
-    ("leaving", "fault"),
-    [
-        ((), None),
-        (("m0",), None),
-        (("m0", "m0"), NOT_THOSE),
-        (("m3",), NOT_THOSE),
-        (("m0", "m1"), "a mode in which the function need not decrease has no longest dwell time"),
-    ],
-)
+@by_rows("leaving", "fault")
 def test_only_what_must_be_left_need_not_decrease(leaving, fault):
     assert odd(family([[-1]], [[-1]], switching=left_within((0, 1))), leaving) == fault
 

@@ -13,18 +13,9 @@ from nrs_design.proof.evidence.abstract import ROUNDED
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Acting, flow_step, map_step, multiplier_names
 from nrs_design.proof.system import SwitchedSystem
+from tests.proof import truth
 from tests.proof.graphs import common_quadratic, forms_of_steps
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, crowded, family, matrix
-from tests.proof.truth import (
-    combine,
-    holds,
-    inequality,
-    is_in_other_units,
-    is_positive_multiple,
-    moves,
-    times,
-    transpose,
-)
 
 ONE = Fraction(1)
 
@@ -41,7 +32,7 @@ def test_the_exact_rate_of_one_state():
     proof = common_quadratic(((1,),), 0, Fraction("0.7501"), (3,))
     assert proof.find_fault(system) is None
     assert agrees(system, proof)
-    assert holds(system, proof)
+    assert truth.holds(system, proof)
     assert proof.claim(system).endswith(ROUNDED)
     for tau in range(20):
         fast = common_quadratic(((8,),), 3, Fraction("0.7499"), (tau,))
@@ -85,16 +76,16 @@ def test_errors_of_a_flow_by_hand(acting):
     """No system with these makes sense, as nothing is rounded in between; the form is right."""
     system = replace(crowded(Time.DISCRETE, lost=False), time=Time.CONTINUOUS)
     assert "there are no steps" in find_contradiction(system)
-    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
+    weights, quarters = WEIGHTS[: len(acting)], truth.combine((Fraction(1, 4), Q3))
     known = {"rounding 1": Fraction(4, 4), "rounding 2": Fraction(9, 4)}
     keeps = Fraction(5, 7)
     wanted = [
-        inequality(move, quarters, quarters, keeps, known.get, weights)
-        for move in moves(system, lost=False, channels=acting, rounding=True)
+        truth.inequality(move, quarters, quarters, keeps, known.get, weights)
+        for move in truth.moves(system, lost=False, channels=acting, rounding=True)
     ]
     found = forms_of_steps(system, Acting(acting, weights, True), (Q3, 2), keeps, (), (4, 9))
     for (_, form), true in zip(found, wanted, strict=True):
-        assert is_positive_multiple(form, true)
+        assert truth.is_positive_multiple(form, true)
 
 
 def test_names_of_multipliers():
@@ -109,15 +100,15 @@ def test_names_of_multipliers():
 def test_a_map_and_a_flow_by_hand():
     A, F, G = matrix([["1/2", "1/3"], [0, "2/5"]]), ((3, 1), (1, 2)), ((5, -1), (-1, 4))
     exact, keeps = A.fractions(), Fraction(3, 7)
-    moved = times(transpose(exact), times(G, exact))
+    moved = truth.times(truth.transpose(exact), truth.times(G, exact))
     step = map_step("", "m0", ("a", "b"), A, 7)
     form = step.form(F, G, keeps)
-    assert is_in_other_units(form, combine((keeps, F), (-1, moved)))
+    assert truth.is_in_other_units(form, truth.combine((keeps, F), (-1, moved)))
     assert (step.source, step.target, step.facts, step.over) == ("a", "b", (), 1)
-    half = times(F, exact)
+    half = truth.times(F, exact)
     flow = flow_step("", "m0", "a", A).form(F, F, keeps)
-    wanted = combine((-1, half), (-1, transpose(half)), (-keeps, F))
-    assert is_positive_multiple(flow, wanted)
+    wanted = truth.combine((-1, half), (-1, truth.transpose(half)), (-keeps, F))
+    assert truth.is_positive_multiple(flow, wanted)
 
 
 def test_a_product_that_is_zero_by_hand():
@@ -128,7 +119,7 @@ def test_a_product_that_is_zero_by_hand():
     plain = step.form(F, F, keeps)
     assert known.form(F, F, keeps) == plain
     form = known.form(F, F, keeps, {"p": 5}.__getitem__)
-    more = combine((1, form), (-1, plain))
+    more = truth.combine((1, form), (-1, plain))
     assert more == [[-5 * 6, -5 * 5], [-5 * 5, -5 * -4]]
     assert known.facts == ("p",)
     assert not Acting().rounding

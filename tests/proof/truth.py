@@ -16,19 +16,9 @@ import numpy as np
 from flint import fmpq, fmpq_mat
 from scipy.linalg import expm
 
+from nrs_design.proof import evidence as kinds
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.evidence import (
-    AbstractEvidence,
-    BlockTriangular,
-    ConstantsQuadratic,
-    FormsOnGraph,
-    GrowingSequence,
-    InvariantEllipsoid,
-    NoCommonQuadratic,
-    OffsetEllipsoid,
-    SaturatedEllipsoid,
-)
 from nrs_design.proof.evidence.block_triangular import diagonal_block
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -123,15 +113,15 @@ def is_rate(rate: Fraction, time: Time) -> bool:
     return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
 
 
-def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
+def holds(system: SwitchedSystem, evidence: kinds.AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
-    clocked = FormsOnGraph | GrowingSequence
+    clocked = kinds.FormsOnGraph | kinds.GrowingSequence
     if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
 
 
-def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
+def _saturated_ellipsoid(system: SwitchedSystem, item: kinds.SaturatedEllipsoid) -> bool:
     """Every choice of arguments and rows as a mode, from the loop without any signal."""
     what, contact, n = system.saturation, system.contact, system.order
     if what is None or system.switching.resets or (contact is not None and contact.pulls):
@@ -213,7 +203,7 @@ def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bo
     return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
 
 
-def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
+def _graph(system: SwitchedSystem, item: kinds.FormsOnGraph) -> bool:
     """What every step asks of the forms before and after it, from the definition."""
     if (
         not is_rate(item.rate, system.time)
@@ -243,7 +233,7 @@ def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
     return _leaves_no_word(item, steps, taken)
 
 
-def edges_at(item: FormsOnGraph, steps: Sequence[Move]) -> Iterator[tuple[int, int, int]]:
+def edges_at(item: kinds.FormsOnGraph, steps: Sequence[Move]) -> Iterator[tuple[int, int, int]]:
     """Yield the number of each step with the nodes that it leads between."""
     places = [node.place for node in item.nodes]
     for k, move in enumerate(steps):
@@ -254,7 +244,7 @@ def edges_at(item: FormsOnGraph, steps: Sequence[Move]) -> Iterator[tuple[int, i
                 yield k, a, b
 
 
-def edge_form(item: FormsOnGraph, move: Move, a: int, b: int) -> Rows:
+def edge_form(item: kinds.FormsOnGraph, move: Move, a: int, b: int) -> Rows:
     """Return the inequality of a graph for a step between two nodes."""
 
     def multiplier(fact: str) -> int:
@@ -270,7 +260,7 @@ def _joins(edge, a: int, mode: str, b: int) -> bool:
     return all(x is None or x == y for x, y in zip(edge, (a, mode, b), strict=True))
 
 
-def _leaves_no_word(item: FormsOnGraph, steps, taken) -> bool:
+def _leaves_no_word(item: kinds.FormsOnGraph, steps, taken) -> bool:
     """Follow words of up to six steps from every place, by brute force."""
     runs = {(p, frozenset(k for k, n in enumerate(item.nodes) if n.place == p))
             for p in {step.source for step in steps}}  # fmt: skip
@@ -411,7 +401,7 @@ def _without(M: Rows, k: int) -> Rows:
     return [[*row[:k], *row[k + 1 :]] for row in M]
 
 
-def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool = False) -> bool:
+def _polynomials(system: SwitchedSystem, item: kinds.FormsOnGraph, *, lost: bool = False) -> bool:
     """Evaluate them at many states, before and after every step: in a flow, after a tiny one."""
     d, rate, functions, maps = item.degree, item.rate, dict(item.nodes), []
     flows, tiny, ruled = system.time is Time.CONTINUOUS, Fraction(1, 10**15), item.stays is not None
@@ -449,7 +439,7 @@ def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool = Fal
     return True
 
 
-def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
+def _invariant_ellipsoid(system: SwitchedSystem, item: kinds.InvariantEllipsoid) -> bool:
     """For the state and a constant one: what raises V only if a disturbance is too large."""
     named = [c for name in item.channels for c in system.channels if c.name == name]
     output = next((o for o in system.outputs if o.name == item.output), None)
@@ -489,7 +479,7 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
     return all(map(is_definite, forms))
 
 
-def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
+def _offset_ellipsoid(system: SwitchedSystem, item: kinds.OffsetEllipsoid) -> bool:
     named = [c for name in item.channels for c in system.channels if c.name == name]
     discrete, n = system.time is Time.DISCRETE, system.order
     if not named or len(named) < len(item.channels):
@@ -507,7 +497,7 @@ def _offset_ellipsoid(system: SwitchedSystem, item: OffsetEllipsoid) -> bool:
     return all(map(is_definite, offset_forms(system, item)))
 
 
-def offset_forms(system: SwitchedSystem, item: OffsetEllipsoid) -> Iterator[Rows]:
+def offset_forms(system: SwitchedSystem, item: kinds.OffsetEllipsoid) -> Iterator[Rows]:
     """For a one, the state and what acts: what raises W only if a sign is not as it must be.
 
     If there is not one multiplier for each fact, a form comes last that is not definite.
@@ -583,7 +573,7 @@ def offset_moves(
         yield wide, facts
 
 
-def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> bool:
+def _no_common_quadratic(system: SwitchedSystem, item: kinds.NoCommonQuadratic) -> bool:
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     n = system.order
     total = [[Fraction(0)] * n for _ in range(n)]
@@ -597,7 +587,7 @@ def _no_common_quadratic(system: SwitchedSystem, item: NoCommonQuadratic) -> boo
     return len(set(names)) == len(names) and is_definite(total)
 
 
-def _constants_quadratic(system: SwitchedSystem, item: ConstantsQuadratic) -> bool:
+def _constants_quadratic(system: SwitchedSystem, item: kinds.ConstantsQuadratic) -> bool:
     """Sample the weights; with each of them the decrease is that of a common quadratic."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     n = len(item.functions)
@@ -642,7 +632,7 @@ def identity(n: int) -> Rows:
     return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
 
 
-def _mode_quadratic(system: SwitchedSystem, item: FormsOnGraph) -> bool:
+def _mode_quadratic(system: SwitchedSystem, item: kinds.FormsOnGraph) -> bool:
     """From entry to entry, after every stay that counts: all up to the longest, or the shortest."""
     Q: Mapping[str, Rows] = dict(item.nodes)
     time = system.time
@@ -696,7 +686,7 @@ def _floats(rows) -> np.ndarray:
     return np.array([[float(entry) for entry in row] for row in rows])
 
 
-def _growing_sequence(system: SwitchedSystem, item: GrowingSequence) -> bool:
+def _growing_sequence(system: SwitchedSystem, item: kinds.GrowingSequence) -> bool:
     if item.shares:
         return _grows_at_value(system, item)
     if item.factor is not None:
@@ -722,7 +712,7 @@ def _is_unstable_mode(system: SwitchedSystem, name: str) -> bool:
     return bounds_of(system, name)[1] is None and not is_stable_by_lyapunov(A, system.time)
 
 
-def _grows_in_contact(system: SwitchedSystem, item: GrowingSequence) -> bool:
+def _grows_in_contact(system: SwitchedSystem, item: kinds.GrowingSequence) -> bool:
     """Follow every eigenvector of the sequence, as contact is lost and made."""
     contact, flights = system.contact, system.flights
     free = () if contact is None else contact.free
@@ -763,7 +753,7 @@ def _eigen(M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return values, vectors.T
 
 
-def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
+def _grows_in_a_period(system: SwitchedSystem, item: kinds.GrowingSequence) -> bool:
     """Walk round the period: switches are edges, stays within their bounds, and it grows."""
     modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
     product_ = np.eye(system.order)
@@ -792,7 +782,7 @@ def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
     return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
 
 
-def _takes_turns(system: SwitchedSystem, item: GrowingSequence) -> bool:
+def _takes_turns(system: SwitchedSystem, item: kinds.GrowingSequence) -> bool:
     """Write every step down, and find a state in which the period may begin for ever."""
     assert system.clock is not None
     return goes_on(system.clock, [name for name, n in item.steps for _ in range(int(n))])
@@ -817,14 +807,14 @@ def goes_on(clock: Clock, names: Sequence[str]) -> bool:
     return False
 
 
-def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:
+def _grows_at_value(system: SwitchedSystem, item: kinds.GrowingSequence) -> bool:
     """The system at a value, which is told apart in test_constant.py, is one without parameters."""
     if not all(0 <= share <= 1 for share in item.shares):
         return False
     return holds(system_at(system, item.shares), replace(item, shares=()))
 
 
-def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
+def _block_triangular(system: SwitchedSystem, item: kinds.BlockTriangular) -> bool:
     order = [state for block in item.blocks for state in block]
     if sorted(order) != list(range(system.order)):
         return False
@@ -841,12 +831,12 @@ def _block_triangular(system: SwitchedSystem, item: BlockTriangular) -> bool:
 
 
 _ORACLES = {
-    ConstantsQuadratic: _constants_quadratic,
-    FormsOnGraph: _graph,
-    GrowingSequence: _growing_sequence,
-    InvariantEllipsoid: _invariant_ellipsoid,
-    NoCommonQuadratic: _no_common_quadratic,
-    OffsetEllipsoid: _offset_ellipsoid,
-    SaturatedEllipsoid: _saturated_ellipsoid,
-    BlockTriangular: _block_triangular,
+    kinds.ConstantsQuadratic: _constants_quadratic,
+    kinds.FormsOnGraph: _graph,
+    kinds.GrowingSequence: _growing_sequence,
+    kinds.InvariantEllipsoid: _invariant_ellipsoid,
+    kinds.NoCommonQuadratic: _no_common_quadratic,
+    kinds.OffsetEllipsoid: _offset_ellipsoid,
+    kinds.SaturatedEllipsoid: _saturated_ellipsoid,
+    kinds.BlockTriangular: _block_triangular,
 }

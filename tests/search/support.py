@@ -13,6 +13,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import Candidates, first_accepted
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.spec import LoadedSpec, parse_spec
+from tests.tables import spec_text
 
 
 def outcome(
@@ -35,19 +36,7 @@ def found(
     return outcome(search, system, **options)[0]
 
 
-TEXT = """\
-kind: interaction-design
-name: soft
-actuator: {gain: GAIN, time_constant: TAU}
-motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
-              zero: 56.9706 1/s}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: {nominal: LOW N*m/rad, range: [LOW N*m/rad, HIGH N*m/rad]}}
-controllers:
-CONTROLLERS
-switching: arbitrary
-"""
+TEXT = spec_text("thesis-robot")
 
 
 def thesis_robot(

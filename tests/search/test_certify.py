@@ -30,6 +30,7 @@ from nrs_design.search.method import Method
 from nrs_design.search.sdp import Maximum, SemidefiniteProgram
 from tests.proof.graphs import common_quadratic, shape_of
 from tests.support import dayawansa_martin, family, holds
+from tests.tables import by_rows
 
 ROTATION = [[0, 1], [-1, 0]]
 SINGULAR = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
@@ -62,16 +63,7 @@ def ando_shih(c):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("asked", "method"),
-    [
-        (None, "lmi"),
-        # No quadratic function shows it; one of degree four does.
-        ("0.3", "polynomial of degree 4"),
-        # No proof shows it: the slowest mode decays with 1/s.
-        ("1.1", "lmi"),
-    ],
-)
+@by_rows("asked", "method")
 def test_a_search_goes_on_until_the_decay_that_is_asked_for(asked, method):
     rate = None if asked is None else Fraction(asked)
     found = certify(STABLE, limits=Limits(decay_rate=rate, budget=20))
@@ -178,16 +170,7 @@ class TestModes:
         assert result.verdict is Verdict.REFUTED
         assert bad_mode(result.evidence) == f"m{others}"
 
-    @pytest.mark.parametrize(
-        "A",
-        [
-            ROTATION,
-            [["0.6", "0.8"], ["-0.8", "0.6"]],
-            [[1, 0], [0, 0]],
-            [[0, 0], [0, -1]],
-            [[2, 0], [0, 0]],
-        ],
-    )
+    @by_rows("A")
     def test_one_bad_mode_refutes_in_discrete_time(self, A):
         result = settle(family([[0, 0], [0, 0]], A, time=Time.DISCRETE))
         assert result.verdict is Verdict.REFUTED
@@ -343,17 +326,7 @@ class TestMethods:
         )
         assert outcome(bad, method) == ("refuted", "impossible")
 
-    @pytest.mark.parametrize(
-        ("method", "system"),
-        [
-            (Method.CONSTANTS_QUADRATIC, STABLE),
-            (Method.VALUE, STABLE),
-            (Method.MODE_POLYNOMIAL, SLOW),
-            (Method.MODE_POLYNOMIAL, DISCRETE),
-            (Method.MIXTURE, SLOW),
-            (Method.MIXTURE, DISCRETE),
-        ],
-    )
+    @by_rows("method", "system", method=Method, system=globals().get)
     def test_rungs_that_do_not_apply_are_refused(self, method, system):
         with pytest.raises(DesignError, match=f"{method} does not apply") as caught:
             certify(system, method)
@@ -664,10 +637,7 @@ def test_evidence_that_does_not_hold_for_all_modes_is_found_out(monkeypatch):
         certify(twice, Method.LMI)
 
 
-@pytest.mark.parametrize(
-    "module",
-    ["search.certification", "search.margin", "pipeline", "api", "gating.run", "models.plant"],
-)
+@by_rows("module")
 def test_nouns_are_imported_without_numpy(module):
     code = f"import sys, nrs_design.{module}; print('numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -12,6 +12,7 @@ from nrs_design.search.certify import certify
 from nrs_design.search.counted_stays import stays_of
 from tests.loop.support import assembled
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, sheared_in_stays
+from tests.tables import spec_text
 
 
 def test_which_automata_count_stays():
@@ -43,21 +44,7 @@ def test_one_form_is_enough_where_switching_is_free():
     assert len({node.form for node in graph.nodes}) == 1
 
 
-SPEC = """
-kind: interaction-design
-name: stays
-title: Two stiffnesses
-position_interface: {time_constant: {nominal: 0.01 s, range: [0.009 s, 0.011 s]}}
-limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
-environments:
-  soft: {model: elastic, stiffness: {nominal: 20 N*m/rad, range: [10 N*m/rad, 30 N*m/rad]}}
-controllers:
-  firm: {type: impedance, environment: soft, Mt: 0.3 kg*m^2, Bt: 4 N*m*s/rad, Kt: 200 N*m/rad}
-  mild: {type: impedance, environment: soft, Mt: 0.3 kg*m^2, Bt: 4 N*m*s/rad, Kt: 2 N*m/rad}
-sampling: {period: 10 ms, delay: 1}
-contact: losable
-switching: {dwell_time: 0.8 s}
-"""
+SPEC = spec_text("two-stiffnesses")
 
 
 def test_a_sampled_loop_that_needs_its_dwell_time():

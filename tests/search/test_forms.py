@@ -8,48 +8,27 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search import forms
+from nrs_design.search import forms, graphs
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.graphs import (
-    draw_balanced,
-    draw_conewise_modes,
-    draw_each_mode,
-    draw_together,
-    draw_turns,
-    search_conewise_modes,
-    search_conewise_polynomial,
-    search_modes,
-    search_periodic_quadratic,
-    search_polynomial,
-    search_together,
-)
 from nrs_design.work import Allowance, NotAffordableError
-from tests.proof.systems import (
-    bouncing,
-    bouncing_in_steps,
-    bouncing_in_turns,
-    dayawansa_martin,
-    family,
-    geromel_colaneri,
-    two_ways,
-)
+from tests.proof import systems
 from tests.search.support import found
 from tests.support import thinned
 
-QUARTIC = partial(search_polynomial, degree=2)
-QUARTIC_WITH_FLIGHT = partial(search_conewise_polynomial, degree=2)
+QUARTIC = partial(graphs.search_polynomial, degree=2)
+QUARTIC_WITH_FLIGHT = partial(graphs.search_conewise_polynomial, degree=2)
 DRAWN = [
-    (search_conewise_modes, bouncing_in_steps(), draw_conewise_modes),
+    (graphs.search_conewise_modes, systems.bouncing_in_steps(), graphs.draw_conewise_modes),
     (
-        search_periodic_quadratic,
-        bouncing_in_turns(1, rounded=True),
-        lambda f: next(draw_turns(f, f.system.clock)),
+        graphs.search_periodic_quadratic,
+        systems.bouncing_in_turns(1, rounded=True),
+        lambda f: next(graphs.draw_turns(f, f.system.clock)),
     ),
-    (search_together, bouncing(), lambda f: draw_together(f, 1, lost=True)),
-    (search_modes, geromel_colaneri(3), lambda f: next(draw_each_mode(f, 1))),
-    (QUARTIC, dayawansa_martin(6), lambda f: draw_together(f, 2)),
-    (QUARTIC_WITH_FLIGHT, bouncing(), lambda f: draw_together(f, 2, lost=True)),
+    (graphs.search_together, systems.bouncing(), lambda f: graphs.draw_together(f, 1, lost=True)),
+    (graphs.search_modes, systems.geromel_colaneri(3), lambda f: next(graphs.draw_each_mode(f, 1))),
+    (QUARTIC, systems.dayawansa_martin(6), lambda f: graphs.draw_together(f, 2)),
+    (QUARTIC_WITH_FLIGHT, systems.bouncing(), lambda f: graphs.draw_together(f, 2, lost=True)),
 ]
 
 
@@ -107,7 +86,7 @@ def test_edges_that_a_solution_violates_are_added(monkeypatch, search, system, d
 
 def test_forms_that_are_nearly_zero_are_no_solution():
     """The best rate is ``sqrt(3)/2``; below it, the solver finds none but zero, with a margin."""
-    assert found(search_modes, two_ways(3)).rate < 0.8665
+    assert found(graphs.search_modes, systems.two_ways(3)).rate < 0.8665
 
 
 def drawn(seed):
@@ -118,8 +97,8 @@ def drawn(seed):
 
 
 def solved(matrices, time=Time.CONTINUOUS):
-    system = family(*matrices.round(6).tolist(), time=time)
-    program = FormsProgram(draw_balanced(Family.of(system)))
+    system = systems.family(*matrices.round(6).tolist(), time=time)
+    program = FormsProgram(graphs.draw_balanced(Family.of(system)))
     rate = at_rest(system)
     solution = program.solve(rate, Allowance())
     # At zero, solvers may see a margin of the size of their errors.

@@ -6,17 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
+from nrs_design.search import gradient as module
 from nrs_design.search.balance import own_norms
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
-from nrs_design.search.gradient import (
-    PER_ROUND,
-    Coordinates,
-    Gradient,
-    Order,
-    find_by_gradient,
-    iterate_gradient,
-)
 from nrs_design.search.method import Method
 from nrs_design.thesis import thesis
 from nrs_design.thesis.switching import impedance_rows
@@ -32,7 +25,7 @@ EASY_STEPS = 0.8 * STEPS
 
 
 def iterate(matrices, time, settings):
-    return iterate_gradient(matrices, time, settings, Allowance())
+    return module.iterate_gradient(matrices, time, settings, Allowance())
 
 
 def largest(A, Q, time=Time.CONTINUOUS):
@@ -52,12 +45,12 @@ def tool():
     return family(stiff, impedance_rows(thesis.SOFT, "0.01", "2.15", "force"))
 
 
-@pytest.mark.parametrize("order", Order)
+@pytest.mark.parametrize("order", module.Order)
 @pytest.mark.parametrize(
     ("matrices", "time"), [(PAIR, Time.CONTINUOUS), (EASY_STEPS, Time.DISCRETE)]
 )
 def test_ended_means_every_inequality_holds(matrices, time, order):
-    result = iterate(matrices, time, Gradient(order=order))
+    result = iterate(matrices, time, module.Gradient(order=order))
     assert result.updates > 0
     assert np.linalg.eigvalsh(result.Q)[0] > 0
     assert all(largest(A, result.Q, time) <= 1e-9 for A in matrices)
@@ -82,7 +75,7 @@ def stepped(A, Q, time, v, x, relaxation, radius):
     ("matrices", "time"), [(PAIR, Time.CONTINUOUS), (EASY_STEPS, Time.DISCRETE)]
 )
 def test_every_update_by_hand(matrices, time):
-    result = iterate(matrices, time, Gradient(1.9, 0.3, start=1))
+    result = iterate(matrices, time, module.Gradient(1.9, 0.3, start=1))
     Q, i, updates = own_norms(matrices[1:2], time)[0], 0, 0
     while max(largest(A, Q, time) for A in matrices) > 0:
         A = matrices[i % 2]
@@ -96,39 +89,39 @@ def test_every_update_by_hand(matrices, time):
     np.testing.assert_allclose(result.Q, Q, rtol=1e-6)
 
 
-@pytest.mark.parametrize("order", Order)
+@pytest.mark.parametrize("order", module.Order)
 @pytest.mark.parametrize("limit", [0, 10])
 def test_gives_up(limit, order):
-    result = iterate(WORSE, Time.CONTINUOUS, Gradient(max_updates=limit, order=order))
+    result = iterate(WORSE, Time.CONTINUOUS, module.Gradient(max_updates=limit, order=order))
     assert result.Q is None
     assert result.updates == limit
 
 
 def test_it_stops_when_its_work_is_used_up():
-    allowance = Allowance(20 * PER_ROUND)
+    allowance = Allowance(20 * module.PER_ROUND)
     with pytest.raises(NotAffordableError, match="stopped"):
-        iterate_gradient(WORSE, Time.CONTINUOUS, Gradient(), allowance)
-    assert allowance.charged < 22 * PER_ROUND
+        module.iterate_gradient(WORSE, Time.CONTINUOUS, module.Gradient(), allowance)
+    assert allowance.charged < 22 * module.PER_ROUND
 
 
 # In the states of the thesis neither pair ends: see `tests/thesis/test_gradient.py`.
-@pytest.mark.parametrize("order", Order)
+@pytest.mark.parametrize("order", module.Order)
 @pytest.mark.parametrize("start", [0, 1])
 @pytest.mark.parametrize("pair", [withdrawal, tool])
-@pytest.mark.parametrize("coordinates", [Coordinates.BALANCED, Coordinates.MEAN_NORM])
+@pytest.mark.parametrize("coordinates", [module.Coordinates.BALANCED, module.Coordinates.MEAN_NORM])
 def test_pairs_of_the_thesis_end_soon_in_other_coordinates(pair, start, order, coordinates):
-    settings = Gradient(order=order, coordinates=coordinates, max_updates=3000, start=start)
-    result = find_by_gradient(Family.of(pair()), settings)
+    settings = module.Gradient(order=order, coordinates=coordinates, max_updates=3000, start=start)
+    result = module.find_by_gradient(Family.of(pair()), settings)
     assert result.Q is not None
     assert result.updates < 300
 
 
-@pytest.mark.parametrize("coordinates", Coordinates)
+@pytest.mark.parametrize("coordinates", module.Coordinates)
 def test_what_it_finds_in_any_coordinates_is_for_the_modes(coordinates):
     system = family([[-1, -100], [Fraction(1, 100), -1]], [[-1, -500], [Fraction(1, 500), -1]])
-    own = Gradient(coordinates=coordinates, max_updates=5000)
-    result = find_by_gradient(Family.of(system), own)
-    assert (result.Q is None) is (coordinates == Coordinates.GIVEN)
+    own = module.Gradient(coordinates=coordinates, max_updates=5000)
+    result = module.find_by_gradient(Family.of(system), own)
+    assert (result.Q is None) is (coordinates == module.Coordinates.GIVEN)
     if result.Q is not None:
         assert all(largest(A, result.Q) < 1 for A in Family.of(system).matrices)
 

@@ -13,36 +13,18 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search import forms, graphs
+from nrs_design.search import graphs as module
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import Family
-from nrs_design.search.graphs import (
-    search_conewise_modes,
-    search_conewise_polynomial,
-    search_modes,
-    search_periodic_quadratic,
-    search_together,
-)
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import PER_CHECK, conewise_cost, family_cost, functions_cost
 from nrs_design.work import Allowance, NotAffordableError
+from tests.proof import systems
 from tests.proof.graphs import shape_of
-from tests.proof.systems import (
-    ando_shih,
-    bouncing,
-    bouncing_in_steps,
-    bouncing_in_turns,
-    dayawansa_martin,
-    doubled_in_turns,
-    family,
-    geromel_colaneri,
-    matrix,
-    rectangular,
-    shears,
-    slow_switching_in_steps,
-)
 from tests.search.support import found, outcome, thesis_robot
 from tests.search.test_stays import A, B, timed
+from tests.tables import by_rows, entry
 
 BOTH = ("2.15", "1.04")
 slow = pytest.mark.slow
@@ -61,7 +43,7 @@ def test_a_stiffness_that_moves_far_is_proved_while_contact_is_lost(k, Mt, delay
     """Where no single function is found: the largest k that was proved in kept contact."""
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(("20", k), BOTH, Mt, sampling=sampling, contact="losable")
-    assert found(search_together, system, optimize_rate=False) is None
+    assert found(module.search_together, system, optimize_rate=False) is None
     result = certify(system, limits=Limits(optimize_rate=False))
     assert result.verdict is Verdict.PROVED
     assert shape_of(result.evidence) == "conewise-mode-quadratic"
@@ -73,9 +55,9 @@ def test_a_stiffness_that_moves_far_is_proved_while_contact_is_lost(k, Mt, delay
 @pytest.mark.parametrize(
     ("search", "system"),
     [
-        (search_conewise_modes, bouncing_in_steps()),
-        (search_periodic_quadratic, bouncing_in_turns(0, rounded=True)),
-        (search_periodic_quadratic, bouncing_in_turns(1, rounded=True)),
+        (module.search_conewise_modes, systems.bouncing_in_steps()),
+        (module.search_periodic_quadratic, systems.bouncing_in_turns(0, rounded=True)),
+        (module.search_periodic_quadratic, systems.bouncing_in_turns(1, rounded=True)),
     ],
 )
 def test_the_rate_is_raised(search, system):
@@ -86,13 +68,13 @@ def test_the_rate_is_raised(search, system):
 def test_where_they_apply():
     turns, steps = {Method.PERIODIC_QUADRATIC}, {Method.CONEWISE_MODE_QUADRATIC}
     flows = {Method.CONEWISE_POLYNOMIAL}
-    assert applicable_methods(bouncing_in_turns()) == turns | {Method.PERIOD}
-    assert outcome(search_periodic_quadratic, bouncing_in_steps())[0] is None
+    assert applicable_methods(systems.bouncing_in_turns()) == turns | {Method.PERIOD}
+    assert outcome(module.search_periodic_quadratic, systems.bouncing_in_steps())[0] is None
     for system, methods in (
-        (bouncing_in_steps(), steps),
-        (bouncing(), flows),
-        (bouncing(1), set()),
-        (dayawansa_martin(5), set()),
+        (systems.bouncing_in_steps(), steps),
+        (systems.bouncing(), flows),
+        (systems.bouncing(1), set()),
+        (systems.dayawansa_martin(5), set()),
     ):
         assert applicable_methods(system) & (turns | steps | flows) == methods
 
@@ -101,28 +83,28 @@ def test_five_samples_of_delay_are_not_found():
     """One mode is unstable by itself."""
     system = thesis_robot(("41.5", "44.2"), BOTH, "0.01", sampling="{period: 2 ms, delay: 5}")
     with pytest.raises(np.linalg.LinAlgError, match="not stable"):
-        outcome(search_conewise_modes, system, optimize_rate=False)
+        outcome(module.search_conewise_modes, system, optimize_rate=False)
 
 
 def test_the_rate_of_one_state_is_nearly_the_best():
     """2 (3/4)^4 = 0.6328 in five steps: 0.91256 a step."""
-    evidence = found(search_periodic_quadratic, doubled_in_turns(5))
+    evidence = found(module.search_periodic_quadratic, systems.doubled_in_turns(5))
     assert shape_of(evidence) == "periodic-quadratic"
     best = (2 * 0.75**4) ** (1 / 5)
     assert best < evidence.rate < best + 0.005
 
 
 def test_what_grows_is_not_found():
-    evidence, words = outcome(search_periodic_quadratic, doubled_in_turns(3))
+    evidence, words = outcome(module.search_periodic_quadratic, systems.doubled_in_turns(3))
     assert evidence is None
     assert "no solution" in words
 
 
 def test_too_many_conditions_leave_roundings_out(monkeypatch):
-    system = bouncing_in_turns(rounded=True)
-    assert found(search_periodic_quadratic, system).covers_rounding
+    system = systems.bouncing_in_turns(rounded=True)
+    assert found(module.search_periodic_quadratic, system).covers_rounding
     monkeypatch.setattr(graphs, "MOST_ROUNDED", 1)
-    assert not found(search_periodic_quadratic, system).covers_rounding
+    assert not found(module.search_periodic_quadratic, system).covers_rounding
 
 
 def test_roundings_that_leave_no_room_are_left_out():
@@ -132,7 +114,7 @@ def test_roundings_that_leave_no_room_are_left_out():
 
 
 def test_numbers_beyond_floating_point():
-    assert certify(doubled_in_turns(4, 10**400)).verdict is Verdict.INCONCLUSIVE
+    assert certify(systems.doubled_in_turns(4, 10**400)).verdict is Verdict.INCONCLUSIVE
 
 
 def test_a_stable_mode_of_one_stay_need_not_decrease_on_the_way():
@@ -147,20 +129,27 @@ def test_a_stable_mode_of_one_stay_need_not_decrease_on_the_way():
 
 @pytest.mark.parametrize(
     "system",
-    [geromel_colaneri("2.752"), ando_shih("0.99"), rectangular(), slow_switching_in_steps()],
+    [
+        systems.geromel_colaneri("2.752"),
+        systems.ando_shih("0.99"),
+        systems.rectangular(),
+        systems.slow_switching_in_steps(),
+    ],
 )
 def test_what_is_found_passes_the_exact_check(system):
-    assert found(search_modes, system).find_fault(system) is None
+    assert found(module.search_modes, system).find_fault(system) is None
 
 
-@pytest.mark.parametrize("system", [geromel_colaneri("2.74"), shears(), ando_shih("1.001")])
+@pytest.mark.parametrize(
+    "system", [systems.geromel_colaneri("2.74"), systems.shears(), systems.ando_shih("1.001")]
+)
 def test_nothing_is_found_where_there_is_nothing(system):
-    assert found(search_modes, system) is None
+    assert found(module.search_modes, system) is None
 
 
 def test_no_ends_of_constant_parameters():
-    system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
-    assert found(search_modes, system) is None
+    system = systems.shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
+    assert found(module.search_modes, system) is None
 
 
 def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):
@@ -171,17 +160,17 @@ def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):
         kept.append(kept[0] if kept else true(*arguments, **options))
         return kept[0]
 
-    system = geromel_colaneri("2.76")
-    honest = found(search_modes, system)
+    system = systems.geromel_colaneri("2.76")
+    honest = found(module.search_modes, system)
     monkeypatch.setattr(forms.FormsProgram, "solve_for", content)
-    claimed = [c.evidence.rate for c in search_modes(Family.of(system))]
+    claimed = [c.evidence.rate for c in module.search_modes(Family.of(system))]
     assert max(claimed) > 100 * honest.rate
-    evidence = found(search_modes, system)
+    evidence = found(module.search_modes, system)
     assert 0 < evidence.rate <= honest.rate
 
 
 def test_fast_ones_are_proposed_first():
-    rates = [c.evidence.rate for c in search_modes(Family.of(ando_shih("0.99")))]
+    rates = [c.evidence.rate for c in module.search_modes(Family.of(systems.ando_shih("0.99")))]
     assert len(set(rates)) > 1
     assert rates == sorted(rates)
 
@@ -189,56 +178,53 @@ def test_fast_ones_are_proposed_first():
 def test_exact_checks_are_part_of_the_work_that_is_predicted():
     """12 modes that may follow each other in any order: 156 forms, each checked twice."""
     modes = [[[f"{k}/100", "1/2"], [0, "1/3"]] for k in range(12)]
-    system = family(*modes, time=Time.DISCRETE)
+    system = systems.family(*modes, time=Time.DISCRETE)
     solution, _ = functions_cost(system, 1)
     allowance = Allowance(solution.work + 0.01)
     with pytest.raises(NotAffordableError, match="with the exact check of what it finds"):
-        next(search_modes(Family.of(system, allowance)))
+        next(module.search_modes(Family.of(system, allowance)))
     checks = 2 * 156 * 4 * PER_CHECK
     enough = Allowance(2 * solution.work + checks + 60.0)
-    assert next(search_modes(Family.of(system, enough))).evidence
+    assert next(module.search_modes(Family.of(system, enough))).evidence
 
 
 SOFT, STIFF = ("41.5", "44.2"), ("43", "62")
 INSERTION = ("2.15",)
 
 
-@pytest.mark.parametrize("system", [bouncing(), bouncing(1), bouncing_in_steps()])
+@pytest.mark.parametrize(
+    "system", [systems.bouncing(), systems.bouncing(1), systems.bouncing_in_steps()]
+)
 @pytest.mark.parametrize("optimize_rate", [False, True])
 def test_a_bouncing_mass(system, optimize_rate):
     assert (
-        shape_of(found(search_together, system, optimize_rate=optimize_rate))
+        shape_of(found(module.search_together, system, optimize_rate=optimize_rate))
         == "conewise-quadratic"
     )
 
 
 def test_free_motion_that_does_not_slow_down_is_not_found():
-    free = Mode("free", matrix([[0, 0], [1, 0]]))
-    system = bouncing()
+    free = Mode("free", systems.matrix([[0, 0], [1, 0]]))
+    system = systems.bouncing()
     sliding = replace(system, assumptions=(), contact=Contact((free,)))
-    evidence, why = outcome(search_together, sliding)
+    evidence, why = outcome(module.search_together, sliding)
     assert evidence is None
     assert why
 
 
-@pytest.mark.parametrize(
-    ("k", "Bt", "Mt", "rate"),
-    [
-        (SOFT, BOTH, "0.01", 3.92),
-        (SOFT, INSERTION, "0.01", 14.1),
-        (SOFT, ("1.04",), "0.01", 4.92),
-        (SOFT, BOTH, "0", 7.61),
-    ],
-)
+@by_rows("k", "Bt", "Mt", "rate")
 def test_rates_in_continuous_time(k, Bt, Mt, rate):
     system = thesis_robot(k, Bt, Mt)
-    evidence = found(search_together, system)
+    evidence = found(module.search_together, system)
     assert shape_of(evidence) == "conewise-quadratic"
     assert float(evidence.rate) > 0.98 * rate
 
 
 def test_stiffer_tissue_has_no_quadratic_function():
-    assert found(search_together, thesis_robot(STIFF, BOTH, "0.01"), optimize_rate=False) is None
+    assert (
+        found(module.search_together, thesis_robot(STIFF, BOTH, "0.01"), optimize_rate=False)
+        is None
+    )
 
 
 SAMPLED = [
@@ -253,15 +239,7 @@ SAMPLED = [
     pytest.param(STIFF, ("2.15", "1.5"), "0", "[0, 2]", "0", None, marks=slow),
 ]
 # The least damping of withdrawal that is proved beside insertion, for a delay and a tolerance.
-LEAST = [
-    ("0.01", "0.95", "[0, 1]", "0"),
-    ("0.01", "1.045", "[0, 2]", "0.02"),
-    ("0.01", "1.225", "[0, 5]", "0"),
-    ("0.005", "0.97", "[0, 2]", "0.02"),
-    ("0", "0.74", "[0, 1]", "0"),
-    ("0", "0.83", "[0, 2]", "0.02"),
-    ("0", "1.02", "[0, 5]", "0"),
-]
+LEAST = entry(__file__, "least")
 
 
 @slow
@@ -269,7 +247,7 @@ LEAST = [
 def test_the_least_damping_of_withdrawal(Mt, Bt, delay, tolerance):
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(SOFT, ("2.15", Bt), Mt, tolerance, sampling=sampling)
-    evidence = found(search_together, system, optimize_rate=False)
+    evidence = found(module.search_together, system, optimize_rate=False)
     assert shape_of(evidence) == "conewise-quadratic"
     assert evidence.covers_rounding
 
@@ -277,7 +255,7 @@ def test_the_least_damping_of_withdrawal(Mt, Bt, delay, tolerance):
 @slow
 def test_the_least_damping_that_takes_one_function_for_each_mode():
     system = thesis_robot(SOFT, ("2.15", "0.94"), "0.005", sampling="{period: 2 ms, delay: [0, 2]}")
-    assert found(search_together, system, optimize_rate=False) is None
+    assert found(module.search_together, system, optimize_rate=False) is None
     result = certify(system, limits=Limits(optimize_rate=False))
     assert shape_of(result.evidence) == "conewise-mode-quadratic"
 
@@ -286,7 +264,7 @@ def test_the_least_damping_that_takes_one_function_for_each_mode():
 def test_rates_of_the_sampled_loop(k, Bt, Mt, delay, tolerance, rate):
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(k, Bt, Mt, tolerance, sampling=sampling)
-    evidence = found(search_together, system, optimize_rate=rate is not None)
+    evidence = found(module.search_together, system, optimize_rate=rate is not None)
     assert shape_of(evidence) == "conewise-quadratic"
     assert rate is None or -log(float(evidence.rate)) / 0.002 > 0.98 * rate
 
@@ -295,7 +273,7 @@ def test_rates_of_the_sampled_loop(k, Bt, Mt, delay, tolerance, rate):
 def test_too_much_at_once_is_not_found():
     """Both controllers with up to two samples of delay and a tolerance of 2 %."""
     system = thesis_robot(SOFT, BOTH, "0.01", "0.02", sampling="{period: 2 ms, delay: [0, 2]}")
-    assert found(search_together, system, optimize_rate=False) is None
+    assert found(module.search_together, system, optimize_rate=False) is None
 
 
 def test_five_samples_of_delay_are_refuted():
@@ -310,18 +288,15 @@ STIFF_LOOP = thesis_robot(("43", "62"), BOTH, "0.01")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("k", "Mt", "degree", "rate"),
-    [(("43", "62"), "0.01", 4, 0.84), (("25", "90.432"), "0", 6, 0.81)],
-)
+@by_rows("k", "Mt", "degree", "rate")
 def test_rates_while_contact_is_lost(k, Mt, degree, rate):
     """Where no quadratic function is found; neither is one of a lower degree."""
     system = thesis_robot(k, BOTH, Mt)
-    evidence = found(search_conewise_polynomial, system, degree=degree // 2)
+    evidence = found(module.search_conewise_polynomial, system, degree=degree // 2)
     assert shape_of(evidence) == "conewise-polynomial"
     assert float(evidence.rate) > 0.98 * rate
     if degree > 4:
-        lower = found(search_conewise_polynomial, system, degree=2, optimize_rate=False)
+        lower = found(module.search_conewise_polynomial, system, degree=2, optimize_rate=False)
         assert lower is None
 
 
@@ -334,9 +309,9 @@ def test_it_is_tried_before_contact_is_taken_for_granted():
 
 
 def test_where_it_applies():
-    for system in (bouncing_in_steps(), bouncing(1), dayawansa_martin(6)):
+    for system in (systems.bouncing_in_steps(), systems.bouncing(1), systems.dayawansa_martin(6)):
         assert Method.CONEWISE_POLYNOMIAL not in applicable_methods(system)
-    assert Method.CONEWISE_POLYNOMIAL in applicable_methods(bouncing())
+    assert Method.CONEWISE_POLYNOMIAL in applicable_methods(systems.bouncing())
 
 
 def test_predictions_grow_with_degree_and_exceed_those_without_flight():

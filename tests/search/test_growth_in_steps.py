@@ -13,16 +13,10 @@ from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.graph import Jump, elementary_cycles
 from nrs_design.search.period import search_period
-from tests.proof.systems import (
-    family,
-    golden,
-    must_leave,
-    must_leave_in_time,
-    resets_between,
-    two_ways,
-)
+from tests.proof import systems
 from tests.proof.truth import holds
 from tests.search.support import found
+from tests.tables import by_rows
 
 FAST = Limits(max_degree=4, budget=5.0, optimize_rate=False)
 
@@ -34,7 +28,7 @@ def shears(dwell, **rules):
     and k of at least 4 and 5 or more.
     """
     pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
-    return family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(dwell), **rules))
+    return systems.family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(dwell), **rules))
 
 
 def search(system):
@@ -64,7 +58,7 @@ def test_a_cycle_that_breaks_the_dwell_time_refutes_nothing(steps):
 def test_legs_longer_than_the_dwell_time():
     """A turn by 5 degrees per step, and a shear: they grow with enough turns, not with 2."""
     turn = [["0.98623", "-0.08628"], ["0.08628", "0.98623"]]
-    system = family(turn, [["1/2", 2], [0, "1/2"]], time=Time.DISCRETE)
+    system = systems.family(turn, [["1/2", 2], [0, "1/2"]], time=Time.DISCRETE)
     system = replace(system, switching=Switching(Fraction(2)))
     short = GrowingSequence((("m0", Fraction(2)), ("m1", Fraction(2))), 12)
     assert short.find_fault(system) is not None
@@ -81,7 +75,9 @@ def ring(count, gain, **rules):
         target = (k + 1) % count
         return [[gain * int(i == target and j == k) for j in range(count)] for i in range(count)]
 
-    return family(*map(step, range(count)), time=Time.DISCRETE, switching=Switching(**rules))
+    return systems.family(
+        *map(step, range(count)), time=Time.DISCRETE, switching=Switching(**rules)
+    )
 
 
 @pytest.mark.slow
@@ -101,8 +97,8 @@ def test_resets_count():
     """Modes that halve the state, and a reset that trebles it."""
     half = [["1/2"]]
     for gain, grows in (("5", True), ("4", True), ("3.9", False)):
-        resets = resets_between(("m0", "m1", [[gain]]))
-        system = family(half, half, time=Time.DISCRETE, switching=Switching(resets=resets))
+        resets = systems.resets_between(("m0", "m1", [[gain]]))
+        system = systems.family(half, half, time=Time.DISCRETE, switching=Switching(resets=resets))
         found = search(system)
         # Two steps and one reset: gain/4.
         assert (found is not None) is (grows and gain == "5")
@@ -114,8 +110,10 @@ def test_resets_in_coordinates_of_the_spec():
     """Badly scaled states: the search must not mix its own scaling with the resets."""
     big = Fraction(10) ** 6
     pair = [["1/2", 2 * big], [0, "1/2"]], [["1/2", 0], [2 / big, "1/2"]]
-    swap = resets_between(("m0", "m1", [["11/10", 0], [0, "11/10"]]))
-    system = family(*pair, time=Time.DISCRETE, switching=Switching(Fraction(3), resets=swap))
+    swap = systems.resets_between(("m0", "m1", [["11/10", 0], [0, "11/10"]]))
+    system = systems.family(
+        *pair, time=Time.DISCRETE, switching=Switching(Fraction(3), resets=swap)
+    )
     found = search(system)
     assert found is not None
     assert found.find_fault(system) is None
@@ -126,16 +124,16 @@ def test_both_ends_of_a_constant_parameter_are_never_mixed():
     pair = [[c, c], [0, c]], [[c, 0], [c, c]]
     low = [["1/4", 0], [0, "1/4"]]
     apart = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
-    system = family(pair[0], low, low, pair[1], time=Time.DISCRETE, switching=apart)
+    system = systems.family(pair[0], low, low, pair[1], time=Time.DISCRETE, switching=apart)
     assert search(system) is None
-    together = family(pair[0], low, pair[1], low, time=Time.DISCRETE, switching=apart)
+    together = systems.family(pair[0], low, pair[1], low, time=Time.DISCRETE, switching=apart)
     assert {name for name, _ in search(together).steps} == {"m0", "m2"}
 
 
 def test_words_are_searched_where_any_mode_may_follow_any():
-    evidence = search(golden("0.6181"))
+    evidence = search(systems.golden("0.6181"))
     assert all(steps == 1 for _, steps in evidence.steps)
-    assert search(golden("0.618")) is None
+    assert search(systems.golden("0.618")) is None
 
 
 def jumps(*pairs):
@@ -185,7 +183,7 @@ def turning(count, gain, **rules):
             for i in range(count)
         ]
 
-    return family(*map(mode, range(count)), switching=Switching(**rules))
+    return systems.family(*map(mode, range(count)), switching=Switching(**rules))
 
 
 @pytest.mark.slow
@@ -202,8 +200,8 @@ def test_around_a_ring_in_continuous_time(count):
 
 def tripled(*modes, **rules):
     """A reset by 3 at every switch between two scalar modes."""
-    resets = resets_between(("m0", "m1", [[3]]), ("m1", "m0", [[3]]))
-    return family(*([[a]] for a in modes), switching=Switching(resets=resets, **rules))
+    resets = systems.resets_between(("m0", "m1", [[3]]), ("m1", "m0", [[3]]))
+    return systems.family(*([[a]] for a in modes), switching=Switching(resets=resets, **rules))
 
 
 # Per round, growth by 9 and decay by exp(-both stays): ln 9 = 2.1972...
@@ -225,30 +223,12 @@ def test_resets_at_every_switch_in_continuous_time(rules, verdict):
     assert holds(found.system, found.evidence)
 
 
-@pytest.mark.parametrize(
-    ("longest", "verdict"), [(2, "proved"), (3, "inconclusive"), (4, "refuted")]
-)
-def test_a_mode_that_must_be_left(longest, verdict):
-    # With three steps, the slowest cycle neither grows nor decays.
-    found = certify(must_leave(longest), limits=FAST)
+@by_rows("system", "verdict", system=systems.built)
+def test_what_must_be_left_and_the_worst_of_two_resets(system, verdict):
+    found = certify(system, limits=FAST)
     assert found.verdict == verdict
-    if found.evidence is not None:
-        assert holds(found.system, found.evidence)
-
-
-@pytest.mark.parametrize(("rest", "verdict"), [("1.1", "proved"), ("0.95", "refuted")])
-def test_a_mode_that_must_be_left_in_time(rest, verdict):
-    found = certify(must_leave_in_time(rest), limits=FAST)
-    assert found.verdict == verdict
-    assert holds(found.system, found.evidence)
-
-
-@pytest.mark.parametrize(("gain", "verdict"), [("3.9", "proved"), ("4.1", "refuted")])
-def test_the_worst_of_two_resets_decides(gain, verdict):
-    found = certify(two_ways(gain), limits=FAST)
-    assert found.verdict == verdict
-    assert holds(found.system, found.evidence)
-    if verdict == "refuted":
+    assert found.evidence is None or holds(system, found.evidence)
+    if system.switching.resets and verdict == "refuted":
         assert found.evidence.edges == (1, 0)
 
 
@@ -256,8 +236,8 @@ def test_the_worst_of_two_resets_decides(gain, verdict):
 def test_two_resets_in_turn(time):
     """Each reset alone, taken twice, makes the state zero."""
     decay = [[-1, 0], [0, -1]] if time is Time.CONTINUOUS else [["1/2", 0], [0, "1/2"]]
-    turns = resets_between(("m0", "m1", [[0, 5], [0, 0]]), ("m0", "m1", [[0, 0], [5, 0]]))
-    system = family(decay, decay, time=time, switching=Switching(resets=turns))
+    turns = systems.resets_between(("m0", "m1", [[0, 5], [0, 0]]), ("m0", "m1", [[0, 0], [5, 0]]))
+    system = systems.family(decay, decay, time=time, switching=Switching(resets=turns))
     found = certify(system, limits=FAST)
     assert found.verdict is Verdict.REFUTED
     assert sorted(found.evidence.edges) == [0, 0, 0, 1]
@@ -298,7 +278,7 @@ def random_graph(seed):
     pairs = [(0, 1), (1, 2), (2, 0), (1, 0)]
     names = [(f"m{a}", f"m{b}") for a, b in pairs]
     maps = rng.integers(-8, 9, size=(3, 2, 2))
-    resets = resets_between(
+    resets = systems.resets_between(
         *((*names[int(rng.integers(0, 2))], [[Fraction(int(v), 8) for v in row] for row in G])
           for G in maps)
     )  # fmt: skip
@@ -311,7 +291,7 @@ def random_graph(seed):
     matrices[2] /= max(1.0, 1.2 * np.abs(np.linalg.eigvals(matrices[2])).max())
     modes = [[[Fraction(round(100 * v), 100) for v in row] for row in A] for A in matrices]
     rules = Switching(transitions=tuple(names), resets=resets, stays=stays)
-    return family(*modes, time=Time.DISCRETE, switching=rules)
+    return systems.family(*modes, time=Time.DISCRETE, switching=rules)
 
 
 @pytest.mark.slow

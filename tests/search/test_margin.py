@@ -13,25 +13,16 @@ from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline.margins import run_proof_margins
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.proof.switching import Stay, Switching
+from nrs_design.search import margin
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
-from nrs_design.search.margin import (
-    DWELL_STEPS,
-    REFUTED_STEPS,
-    STEPS,
-    Bracket,
-    command_margin,
-    find_longest_delay,
-    find_longest_period,
-    find_margin,
-    find_shortest_dwell,
-)
 from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from nrs_design.spec.switching import LONGEST_DWELL
 from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
 from tests.proof.systems import bouncing, pushed
 from tests.support import ROOT, dayawansa_martin, family, holds
+from tests.tables import by_rows
 
 QUICK = Limits(max_degree=6, budget=2.0, optimize_rate=False)
 ANY = family([[-1]])
@@ -76,9 +67,13 @@ def between(proved, refuted, beyond=10**9):
     return rule
 
 
+def ruled(numbers):
+    return between(*map(Fraction, numbers))
+
+
 def box_of(rule, known=None):
     given_rule = Rule(rule)
-    found = find_margin(given_rule.assemble, given_rule.certify, known)
+    found = margin.find_margin(given_rule.assemble, given_rule.certify, known)
     assert len(set(given_rule.seen)) == len(given_rule.seen)
     return found, given_rule.seen
 
@@ -86,14 +81,14 @@ def box_of(rule, known=None):
 @pytest.mark.slow
 def test_published_limit_of_the_oscillator():
     """Zelentsovsky 1994: 6.98513; by quadratic functions alone 1 + 2 sqrt(2)."""
-    box = find_margin(oscillator, quick)
+    box = margin.find_margin(oscillator, quick)
     assert 6 < 3 * box.proved < 6.98513 < 3 * box.refuted < 7
     assert box.proof.system == oscillator(box.proved)
     assert all(holds(box.proof.system, item) for item in box.proof.statements)
 
 
 def test_quadratic_functions_alone_reach_the_circle_criterion():
-    box = find_margin(oscillator, lambda system: certify(system, Method.LMI, QUICK))
+    box = margin.find_margin(oscillator, lambda system: certify(system, Method.LMI, QUICK))
     assert 3.8 < 3 * box.proved < 1 + 2 * 2**0.5
     assert box.refuted is None
 
@@ -103,11 +98,11 @@ def test_quadratic_functions_alone_reach_the_circle_criterion():
 def test_a_box_is_true_and_narrow(proved, gap):
     limit = proved + gap + Fraction(1, 10**9)
     box, seen = box_of(between(proved, limit))
-    assert 0 <= proved - box.proved <= max(box.proved, 1) * Fraction(1, 2**STEPS)
+    assert 0 <= proved - box.proved <= max(box.proved, 1) * Fraction(1, 2**margin.STEPS)
     # The gap of ignorance is found from both sides, unless it is too wide.
     assert box.refuted is not None or limit > min(8 * max(proved, 1), 64)
     if box.refuted is not None:
-        assert 0 <= box.refuted - limit <= box.refuted * Fraction(1, 2**REFUTED_STEPS)
+        assert 0 <= box.refuted - limit <= box.refuted * Fraction(1, 2**margin.REFUTED_STEPS)
     assert {box.proved, box.refuted} - {None} <= {*seen}
 
 
@@ -119,18 +114,7 @@ def test_a_box_never_contradicts_what_is_known_of_the_declared_ranges(known):
     assert 1 not in seen
 
 
-@pytest.mark.parametrize(
-    ("rule", "proved", "refuted", "end"),
-    [
-        (between(-1, 0), None, 0, ""),
-        (between(-1, 99), None, None, "none of up to 8 is refuted: the search ends there"),
-        (between(100, 200), 64, None, "none of up to 64 is refuted: the search ends there"),
-        (between(9, 9, Fraction(5, 4)), Fraction(5, 4), None, "makes no system (too large)"),
-        # Doubling leaps over scales that make a system; the widest of them is looked at.
-        (between(1, Fraction(19, 10), Fraction(39, 20)), 1, Fraction(31207, 16384), ""),
-        (between(0, 9, 0), 0, None, "none of up to 0 is refuted"),
-    ],
-)
+@by_rows("rule", "proved", "refuted", "end", rule=ruled, proved=Fraction, refuted=Fraction)
 def test_where_a_box_ends(rule, proved, refuted, end):
     box, _ = box_of(rule)
     assert (box.proved, box.refuted) == (proved, refuted)
@@ -143,21 +127,7 @@ def test_nominal_values_that_make_no_system_are_an_error():
         box_of(between(1, 2, beyond=-1))
 
 
-@pytest.mark.parametrize(
-    ("rule", "shortest", "declared", "unstable", "expected"),
-    [
-        (between(1, 3), 0, 1, 99, (1, 3)),
-        (between(10, 99), 0, 1, 99, (10, None)),
-        (between(10, 99), 0, 2, 21, (10, 21)),
-        (between(2, 99), 0, 2, 33, (2, None)),
-        (between(2, 99), 0, 2, 10, (2, 10)),
-        (between(0, 1), 0, 2, 99, (0, 1)),
-        (between(0, 2), 0, 2, 99, (0, 2)),
-        (between(-1, 0), 0, 0, 99, (None, 0)),
-        (between(-1, 9), 1, 2, 99, (None, 9)),
-        (between(4, 99, beyond=4), 0, 1, 12, (4, 12)),
-    ],
-)
+@by_rows("rule", "shortest", "declared", "unstable", "expected", rule=ruled, expected=tuple)
 def test_the_longest_delay(rule, shortest, declared, unstable, expected):
     """Beyond ten samples, those from `unstable` on are refuted by a quick test alone."""
     own, told = Rule(rule), []
@@ -169,7 +139,7 @@ def test_the_longest_delay(rule, shortest, declared, unstable, expected):
         return "in kept contact" if int(system.name) >= unstable else None
 
     known = certified(rule(declared))
-    found = find_longest_delay(
+    found = margin.find_longest_delay(
         (shortest, declared, 10), assemble, own.certify, unstable_in, known, told.append
     )
     assert (found.proved, found.refuted) == expected
@@ -184,7 +154,7 @@ def test_the_longest_delay(rule, shortest, declared, unstable, expected):
 def period_of(start, rule):
     own = Rule(rule)
     known = certified(rule(start))
-    return find_longest_period(Fraction(start), own.assemble, own.certify, known)
+    return margin.find_longest_period(Fraction(start), own.assemble, own.certify, known)
 
 
 @pytest.mark.parametrize("start", [1, 4, 8])
@@ -200,7 +170,9 @@ def test_where_no_period_is_refuted_the_end_is_named():
     assert (found.proved, found.refuted) == (1, None)
     assert found.end == "none of up to 1 s is refuted: what is beyond makes no system (too large)"
     nothing = period_of(1, lambda period: N)
-    assert nothing == Bracket(None, None, "none of up to 16 s is refuted: the search ends there")
+    assert nothing == margin.Bracket(
+        None, None, "none of up to 16 s is refuted: the search ends there"
+    )
 
 
 def dwell_of(system, rule, known=None):
@@ -211,7 +183,7 @@ def dwell_of(system, rule, known=None):
         asked.append(changed.switching.dwell_time)
         return certified(rule(asked[-1]), changed)
 
-    found = find_shortest_dwell(system, decide, certified(known or N, system))
+    found = margin.find_shortest_dwell(system, decide, certified(known or N, system))
     assert len(set(asked)) == len(asked)
     return found, asked
 
@@ -231,7 +203,7 @@ def dwell_of(system, rule, known=None):
     ],
 )
 def test_shortest_dwell_times_that_are_known(system, low, high):
-    dwell = find_shortest_dwell(system, quick, quick(system))
+    dwell = margin.find_shortest_dwell(system, quick, quick(system))
     assert low[0] < dwell.refuted < low[1]
     assert high[0] < dwell.proved < high[1]
     assert dwell.proved < 1.02 * dwell.refuted
@@ -241,15 +213,15 @@ def test_shortest_dwell_times_that_are_known(system, low, high):
 
 def test_no_dwell_time_is_needed():
     system = dayawansa_martin(5)
-    dwell = find_shortest_dwell(system, quick, quick(system))
+    dwell = margin.find_shortest_dwell(system, quick, quick(system))
     assert (dwell.proved, dwell.refuted, dwell.proof.verdict) == (0, None, "proved")
 
 
 @pytest.mark.parametrize("other", [[[-1]], [[2]]])
 def test_no_dwell_time_is_long_enough_for_an_unstable_mode(other):
     system = family([[1]], other)
-    dwell = find_shortest_dwell(system, quick, quick(system))
-    assert dwell == Bracket(None, LONGEST_DWELL)
+    dwell = margin.find_shortest_dwell(system, quick, quick(system))
+    assert dwell == margin.Bracket(None, LONGEST_DWELL)
 
 
 @settings(deadline=None)
@@ -262,8 +234,8 @@ def test_a_dwell_time_is_true_and_narrow(proved, share, own):
 
     dwell, asked = dwell_of(replace(ANY, switching=Switching(own)), rule, rule(own))
     size = max(proved, 1)
-    assert 0 <= refuted - dwell.refuted <= 2 * size * Fraction(1, 2**REFUTED_STEPS)
-    assert 0 <= dwell.proved - proved <= 2 * size * Fraction(1, 2**DWELL_STEPS)
+    assert 0 <= refuted - dwell.refuted <= 2 * size * Fraction(1, 2**margin.REFUTED_STEPS)
+    assert 0 <= dwell.proved - proved <= 2 * size * Fraction(1, 2**margin.DWELL_STEPS)
     assert {dwell.proved, dwell.refuted} <= {*asked, own}
 
 
@@ -279,10 +251,7 @@ def test_what_is_known_of_dwell_times_of_their_own(verdict, proved, refuted):
     assert max(asked) == LONGEST_DWELL or proved
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [("oscillator-range", "constant matrices only"), ("ando-shih", "continuous time")],
-)
+@by_rows("name", "said")
 def test_no_dwell_time_for_ranges_and_discrete_time(name, said):
     path = ROOT / "specs" / "examples" / f"{name}.nrs.yaml"
     result = run_certification(read_spec(path), limits=QUICK)
@@ -293,7 +262,7 @@ def test_no_dwell_time_for_ranges_and_discrete_time(name, said):
 def test_disturbances_that_keep_the_limit():
     """The limit is 1 N, the level 3/5 N, and a run reaches 1/2 N: by proportion."""
     bound = BOUNCE.bound(pushed(bouncing()))
-    found = command_margin(bound, 0.5)
+    found = margin.command_margin(bound, 0.5)
     assert found.limit == 1
     assert found.bounds["push"] == (Fraction(1, 4) * Fraction(5, 3), Fraction(1, 2), "N")
-    assert command_margin(bound, 0.0) is None
+    assert margin.command_margin(bound, 0.0) is None

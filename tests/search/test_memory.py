@@ -9,24 +9,11 @@ import pytest
 
 from nrs_design.proof.evidence.graph import MAX_SETS, Arc
 from nrs_design.proof.switching import Stay, Switching
+from nrs_design.search import memory
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
-from nrs_design.search.memory import (
-    MOST_WORDS,
-    count_words,
-    draw_memory,
-    following,
-    least_growth,
-    memories,
-    quadratic_memories,
-    quartic_memories,
-    search_extremal_words,
-    search_memory,
-    words,
-    words_in_norms,
-)
 from nrs_design.search.method import Method
 from nrs_design.work import Allowance
 from tests.literature.test_growth_per_step import divided
@@ -39,16 +26,16 @@ LIFTED = {2: 0.9820958128927598, 4: 0.9753566329765574}
 
 def test_words_without_rules_are_all():
     system = ando_shih(1)
-    assert following(system) == {"m0": ["m0", "m1"], "m1": ["m0", "m1"]}
-    assert words(system, 2) == [("m0", "m0"), ("m0", "m1"), ("m1", "m0"), ("m1", "m1")]
-    assert count_words(system, 3) == (8, 16)
+    assert memory.following(system) == {"m0": ["m0", "m1"], "m1": ["m0", "m1"]}
+    assert memory.words(system, 2) == [("m0", "m0"), ("m0", "m1"), ("m1", "m0"), ("m1", "m1")]
+    assert memory.count_words(system, 3) == (8, 16)
 
 
 def test_words_under_rules_are_those_that_the_rules_allow():
     rules = Switching(transitions=(("m0", "m1"), ("m1", "m0")), stays=(("m1", Stay(1, 1)),))
     system = family([["1/2"]], [["3/2"]], time="discrete", switching=rules)
-    assert following(system) == {"m0": ["m0", "m1"], "m1": ["m0"]}
-    found = words(system, 3)
+    assert memory.following(system) == {"m0": ["m0", "m1"], "m1": ["m0"]}
+    found = memory.words(system, 3)
     assert len(found) == 5
     assert not any(pair == ("m1", "m1") for word in found for pair in pairwise(word))
 
@@ -56,14 +43,14 @@ def test_words_under_rules_are_those_that_the_rules_allow():
 def test_what_never_ends_in_a_word_has_none():
     rules = Switching(transitions=(), stays=(("m0", Stay(1, 1)), ("m1", Stay(1, 1))))
     system = family([["1/2"]], [["1/2"]], time="discrete", switching=rules)
-    assert words(system, 2) is None
+    assert memory.words(system, 2) is None
 
 
 def test_memories_end_where_the_check_would_refuse_them():
-    longest = max(memories(ando_shih(1)))
-    assert 2**longest <= MOST_WORDS < 2 ** (longest + 1) <= MAX_SETS
-    assert min(quadratic_memories(lossy_network())) == 2
-    assert not quartic_memories(family([[1]], [[2]], time="discrete"))
+    longest = max(memory.memories(ando_shih(1)))
+    assert 2**longest <= memory.MOST_WORDS < 2 ** (longest + 1) <= MAX_SETS
+    assert min(memory.quadratic_memories(lossy_network())) == 2
+    assert not memory.quartic_memories(family([[1]], [[2]], time="discrete"))
 
 
 @pytest.mark.parametrize("degree", LIFTED)
@@ -71,7 +58,7 @@ def test_a_memory_of_two_steps_shows_no_less_than_is_published(degree):
     """Quadratic forms for the nodes alone show nothing: 1.00358."""
     system = lossy_network()
     family_of = Family.of(system, Allowance(20.0))
-    evidence, _ = first_accepted(search_memory(family_of, 2, degree // 2), system)
+    evidence, _ = first_accepted(memory.search_memory(family_of, 2, degree // 2), system)
     assert 0.9748171979 < evidence.rate < LIFTED[degree] * 1.001
 
 
@@ -130,8 +117,8 @@ def test_equal_modes_keep_their_words():
 
 
 def test_a_drawing_has_a_node_for_each_word_and_an_edge_for_each_longer_one():
-    drawing = draw_memory(lossy_network(Fraction(1, 2)), 2)
-    nodes, edges = count_words(lossy_network(), 2)
+    drawing = memory.draw_memory(lossy_network(Fraction(1, 2)), 2)
+    nodes, edges = memory.count_words(lossy_network(), 2)
     assert (len(drawing.graph.nodes), len(drawing.graph.edges)) == (nodes, edges)
 
 
@@ -139,7 +126,9 @@ LONG = 1.6841852824915513
 
 
 def sought(system):
-    return first_accepted(search_extremal_words(Family.of(system, Allowance(20.0))), system)[0]
+    return first_accepted(memory.search_extremal_words(Family.of(system, Allowance(20.0))), system)[
+        0
+    ]
 
 
 def test_a_long_word_is_found_where_it_hardly_grows():
@@ -161,11 +150,11 @@ def test_words_under_rules(scale, grows):
 
 
 def test_the_least_growth_of_forms_is_near_that_of_words():
-    program = FormsProgram(draw_memory(golden(1), 1))
-    assert least_growth(program, Allowance(), 1.6180339887, 1.6) is None
-    rate, solution = least_growth(program, Allowance(), 1.6180339887, 2.0)
+    program = FormsProgram(memory.draw_memory(golden(1), 1))
+    assert memory.least_growth(program, Allowance(), 1.6180339887, 1.6) is None
+    rate, solution = memory.least_growth(program, Allowance(), 1.6180339887, 2.0)
     assert 1.618 < rate < 1.6185
     assert all(np.linalg.eigvalsh(Q)[0] > 0 for Q in solution.forms)
-    *_, (word, growth) = words_in_norms(program, solution, Allowance(), 1.0)
+    *_, (word, growth) = memory.words_in_norms(program, solution, Allowance(), 1.0)
     assert sorted(word) == [0, 1]
     assert growth == pytest.approx((1 + 5**0.5) / 2)

@@ -9,16 +9,7 @@ from nrs_design.proof.channels import Output
 from nrs_design.proof.mode import Time
 from nrs_design.search.rate_slope import RESOLUTION, force_slope, may_have_slope, rate_slope
 from nrs_design.work import Allowance, NotAffordableError
-from tests.proof.systems import (
-    bouncing_in_steps,
-    bouncing_in_turns,
-    dayawansa_martin,
-    family,
-    lossy_network,
-    matrix,
-    oscillator,
-    pushed,
-)
+from tests.proof import systems
 from tests.search.test_invariant_ellipsoid import bounded
 
 PERIOD = Fraction(1, 100)
@@ -26,7 +17,7 @@ PERIOD = Fraction(1, 100)
 
 def diagonal(a, b):
     """Two modes that share their eigenvectors: the rate is that of the slowest entry."""
-    return family([[-Fraction(a), 0], [0, -3]], [[-2, 0], [0, -Fraction(b)]])
+    return systems.family([[-Fraction(a), 0], [0, -3]], [[-2, 0], [0, -Fraction(b)]])
 
 
 def in_steps(system):
@@ -35,7 +26,7 @@ def in_steps(system):
         [[(i == j) + PERIOD * entry for j, entry in enumerate(row)] for i, row in enumerate(rows)]
         for rows in (mode.A.fractions() for mode in system.modes)
     ]
-    return replace(family(*modes, time=Time.DISCRETE), sample_time=PERIOD)
+    return replace(systems.family(*modes, time=Time.DISCRETE), sample_time=PERIOD)
 
 
 def test_the_slowest_entry_is_the_rate():
@@ -51,7 +42,9 @@ def test_only_the_slowest_entry_has_a_slope():
 
 
 @pytest.mark.parametrize("shape", [lambda system: system, in_steps])
-@pytest.mark.parametrize(("make", "at"), [(dayawansa_martin, "4"), (oscillator, "2")])
+@pytest.mark.parametrize(
+    ("make", "at"), [(systems.dayawansa_martin, "4"), (systems.oscillator, "2")]
+)
 def test_the_slope_is_that_of_the_rate(make, at, shape):
     near = Fraction(at) * Fraction(101, 100)
     far = Fraction(at) * Fraction(105, 100)
@@ -62,42 +55,45 @@ def test_the_slope_is_that_of_the_rate(make, at, shape):
 
 def test_it_is_negative_where_no_form_shows_decay():
     """Dayawansa and Martin 1999: there is a common quadratic function iff a < 3 + sqrt(8)."""
-    below, above = (rate_slope(dayawansa_martin(a)) for a in ("5.8", "5.86"))
+    below, above = (rate_slope(systems.dayawansa_martin(a)) for a in ("5.8", "5.86"))
     assert below.rate > 0 > above.rate
-    assert below.change(dayawansa_martin("5.86")) < -below.rate
+    assert below.change(systems.dayawansa_martin("5.86")) < -below.rate
 
 
 def test_growth_is_a_negative_rate():
-    found = rate_slope(family([[Fraction(1, 2), 0], [0, -3]], [[-2, 1], [0, -1]]))
+    found = rate_slope(systems.family([[Fraction(1, 2), 0], [0, -3]], [[-2, 1], [0, -1]]))
     assert found.rate == pytest.approx(-0.5, rel=1e-2)
-    steps = rate_slope(in_steps(family([[Fraction(1, 2), 0], [0, -3]], [[-2, 1], [0, -1]])))
+    steps = rate_slope(in_steps(systems.family([[Fraction(1, 2), 0], [0, -3]], [[-2, 1], [0, -1]])))
     assert steps.rate == pytest.approx(-0.5, rel=1e-2)
 
 
 def test_a_guess_changes_little():
-    rates = [rate_slope(dayawansa_martin(4), guess).rate for guess in (None, 1e-3, 0.1, 10.0, -1.0)]
+    rates = [
+        rate_slope(systems.dayawansa_martin(4), guess).rate
+        for guess in (None, 1e-3, 0.1, 10.0, -1.0)
+    ]
     assert rates == pytest.approx([rates[0]] * len(rates), rel=4 * RESOLUTION)
 
 
 def test_where_contact_is_lost():
-    system = replace(bouncing_in_steps("0.5"), sample_time=PERIOD)
+    system = replace(systems.bouncing_in_steps("0.5"), sample_time=PERIOD)
     assert may_have_slope(system)
     assert rate_slope(system) is not None
 
 
-@pytest.mark.parametrize("system", [bouncing_in_turns(), lossy_network()])
+@pytest.mark.parametrize("system", [systems.bouncing_in_turns(), systems.lossy_network()])
 def test_what_has_none(system):
     """Unlike one form for all modes: forms of turns, and of modes under rules."""
     assert not may_have_slope(system)
 
 
 def test_numbers_beyond_floating_point_have_no_slope():
-    assert rate_slope(family([[-(10**400), 0], [0, -1]])) is None
+    assert rate_slope(systems.family([[-(10**400), 0], [0, -1]])) is None
 
 
 def test_a_budget_is_kept():
     with pytest.raises(NotAffordableError):
-        rate_slope(dayawansa_martin(4), allowance=Allowance(1e-6))
+        rate_slope(systems.dayawansa_martin(4), allowance=Allowance(1e-6))
 
 
 def found_of(system, share=None):
@@ -105,19 +101,19 @@ def found_of(system, share=None):
 
 
 def test_it_is_the_bound_of_the_evidence():
-    system = pushed(dayawansa_martin(4))
+    system = systems.pushed(systems.dayawansa_martin(4))
     assert float(bounded(system).level) == pytest.approx(found_of(system).level, rel=5e-3)
 
 
 def test_the_slope_is_that_of_the_bound():
-    at, near, far = (pushed(dayawansa_martin(a)) for a in ("4", "4.004", "4.2"))
+    at, near, far = (systems.pushed(systems.dayawansa_martin(a)) for a in ("4", "4.004", "4.2"))
     found = found_of(at)
     whole = found_of(far).level / found.level - 1
     assert 50 * found.change(near) == pytest.approx(whole, rel=0.15)
 
 
 def test_a_share_that_was_the_best_is_a_good_guess():
-    system = pushed(dayawansa_martin(4))
+    system = systems.pushed(systems.dayawansa_martin(4))
     found = found_of(system)
     assert found_of(system, found.share).level <= found.level * 1.001
     # One that is of no use is not taken.
@@ -125,11 +121,11 @@ def test_a_share_that_was_the_best_is_a_good_guess():
 
 
 def test_growth_has_no_bound():
-    system = pushed(family([[1, 0], [0, -1]], [[-1, 0], [0, -2]]))
+    system = systems.pushed(systems.family([[1, 0], [0, -1]], [[-1, 0], [0, -2]]))
     assert found_of(system) is None
 
 
 def test_the_budget_of_a_bound_is_kept():
-    system = pushed(dayawansa_martin(4))
+    system = systems.pushed(systems.dayawansa_martin(4))
     with pytest.raises(NotAffordableError):
-        force_slope(system, Output("x", "m", (matrix([[1, 0]]),) * 2), Allowance(1e-9))
+        force_slope(system, Output("x", "m", (systems.matrix([[1, 0]]),) * 2), Allowance(1e-9))

@@ -9,29 +9,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.mode import Time
+from nrs_design.search import rates as module
 from nrs_design.search.acceptance import NO_MARGIN
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import draw_balanced
-from nrs_design.search.rates import (
-    BACK_OFFS,
-    BITS,
-    RATE_BITS,
-    RESOLUTION,
-    SMALLEST,
-    Rates,
-    bisect_position,
-    claims,
-    digits,
-    propose,
-    rate_at,
-    round_form,
-    round_rate,
-    unscale,
-)
 from nrs_design.work import Allowance, Cost, NotAffordableError
 from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
+from tests.tables import by_rows
 
 PAIR = Family.of(dayawansa_martin(5))
 # How exactly a position is found where it is not told otherwise.
@@ -48,16 +34,16 @@ def largest_position(allowance=None):
     program = FormsProgram(draw_balanced(PAIR))
 
     def shown(position):
-        rate = rate_at(position, 1.0, Time.CONTINUOUS)
+        rate = module.rate_at(position, 1.0, Time.CONTINUOUS)
         found = program.solve(rate, allowance or Allowance())
         return None if found is None else position
 
-    return bisect_position(shown, 0.0, FINE)
+    return module.bisect_position(shown, 0.0, FINE)
 
 
 def test_positions_run_from_stability_to_the_limit():
-    assert [rate_at(s, 4.0, Time.CONTINUOUS) for s in (0.0, 0.5, 1.0)] == [0.0, 2.0, 4.0]
-    contractions = [rate_at(s, 0.2, Time.DISCRETE) for s in (0.0, 0.5, 1.0)]
+    assert [module.rate_at(s, 4.0, Time.CONTINUOUS) for s in (0.0, 0.5, 1.0)] == [0.0, 2.0, 4.0]
+    contractions = [module.rate_at(s, 0.2, Time.DISCRETE) for s in (0.0, 0.5, 1.0)]
     assert contractions == pytest.approx([1.0, 0.6, 0.2])
 
 
@@ -68,21 +54,21 @@ def test_position_of_dayawansa_martin():
 
 
 @pytest.mark.parametrize("further", [0.0, 0.3])
-@pytest.mark.parametrize("threshold", [0.999, 0.5, 0.3, 1e-6, 2 * SMALLEST])
+@pytest.mark.parametrize("threshold", [0.999, 0.5, 0.3, 1e-6, 2 * module.SMALLEST])
 def test_position_is_bracketed_relative_to_itself(threshold, further):
-    position = bisect_position(shown_up_to(threshold, further))
-    assert threshold * (1 - 2 * RESOLUTION) <= position <= threshold
+    position = module.bisect_position(shown_up_to(threshold, further))
+    assert threshold * (1 - 2 * module.RESOLUTION) <= position <= threshold
 
 
-@pytest.mark.parametrize("threshold", [0.0, SMALLEST / 4])
+@pytest.mark.parametrize("threshold", [0.0, module.SMALLEST / 4])
 def test_nothing_feasible_ends(threshold):
-    assert bisect_position(shown_up_to(threshold)) == 0.0
+    assert module.bisect_position(shown_up_to(threshold)) == 0.0
 
 
 def test_a_position_is_bracketed_to_a_difference():
     tried = []
     shown = shown_up_to(0.3)
-    position = bisect_position(lambda s: tried.append(s) or shown(s), 0.0, 2.0**-8)
+    position = module.bisect_position(lambda s: tried.append(s) or shown(s), 0.0, 2.0**-8)
     assert 0.3 - 2.0**-8 <= position <= 0.3
     # And once above what it has found.
     assert len(tried) == 8 + 1
@@ -90,8 +76,8 @@ def test_a_position_is_bracketed_to_a_difference():
 
 def test_a_solver_that_fails_below_the_largest_does_not_end_the_search():
     shown = shown_up_to(0.3)
-    position = bisect_position(lambda s: None if s == 0.28125 else shown(s))
-    assert 0.3 * (1 - 2 * RESOLUTION) <= position <= 0.3
+    position = module.bisect_position(lambda s: None if s == 0.28125 else shown(s))
+    assert 0.3 * (1 - 2 * module.RESOLUTION) <= position <= 0.3
 
 
 @dataclass
@@ -122,21 +108,23 @@ class Known:
 def proposed(program, time=Time.CONTINUOUS, rates=None, coverings=(False,), **options):
     limit = 2.0 if time is Time.CONTINUOUS else 0.5
     family = replace(Family.of(system_of([[-1]] if limit > 1 else [["1/2"]], time=time)), **options)
-    return propose(program, family, limit, rates or Rates(), coverings)
+    return module.propose(program, family, limit, rates or module.Rates(), coverings)
 
 
 @pytest.mark.parametrize("time", list(Time))
 def test_solutions_come_fastest_first(time):
     """Every claim is a short rate on the safe side of what a solution shows."""
-    best = rate_at(0.8, 2.0 if time is Time.CONTINUOUS else 0.5, time)
+    best = module.rate_at(0.8, 2.0 if time is Time.CONTINUOUS else 0.5, time)
     found = [
         c.evidence
-        for c in proposed(Known(best, is_flow=time is Time.CONTINUOUS), time, Rates(always=True))
+        for c in proposed(
+            Known(best, is_flow=time is Time.CONTINUOUS), time, module.Rates(always=True)
+        )
     ]
     claims = list(dict.fromkeys(claim for _, claim, _ in found))
     assert claims == sorted(claims, reverse=time is Time.CONTINUOUS)
-    assert claims == [round_rate(claim, time) for claim in claims]
-    assert len(claims) == len(BACK_OFFS)
+    assert claims == [module.round_rate(claim, time) for claim in claims]
+    assert len(claims) == len(module.BACK_OFFS)
     assert float(claims[0]) == pytest.approx(best, rel=1e-3)
     sign = 1 if time is Time.CONTINUOUS else -1
     assert all(sign * (solution - float(claim)) >= 0 for solution, claim, _ in found)
@@ -167,7 +155,7 @@ def test_no_solution_is_no_margin():
 @pytest.mark.parametrize("always", [False, True])
 def test_the_search_for_the_best_rate_takes_half_of_the_work(always):
     allowance = Allowance(10.0)
-    found = proposed(Known(2.0, work=1.0), rates=Rates(always=always), allowance=allowance)
+    found = proposed(Known(2.0, work=1.0), rates=module.Rates(always=always), allowance=allowance)
     assert next(found).evidence[1] < 2
     assert allowance.left == pytest.approx(5.0)
     if always:
@@ -192,7 +180,7 @@ def test_a_bisection_without_work_keeps_what_it_has():
             raise NotAffordableError("no time")
         return position if position < 0.6 else None
 
-    assert bisect_position(shown) == 0.5
+    assert module.bisect_position(shown) == 0.5
 
 
 CONTINUOUS, DISCRETE = Time.CONTINUOUS, Time.DISCRETE
@@ -200,43 +188,32 @@ CONTINUOUS, DISCRETE = Time.CONTINUOUS, Time.DISCRETE
 
 @pytest.mark.parametrize(("time", "limit"), [(CONTINUOUS, 3.7), (DISCRETE, 0.3)])
 def test_claims_are_below_the_position_the_fastest_first(time, limit):
-    proposed = list(claims(0.8, limit, time))
-    assert len(proposed) == len(BACK_OFFS)
+    proposed = list(module.claims(0.8, limit, time))
+    assert len(proposed) == len(module.BACK_OFFS)
     assert proposed == sorted(proposed, reverse=time is CONTINUOUS)
-    for back_off, claim in zip(BACK_OFFS, proposed, strict=True):
-        rate = rate_at(0.8 * back_off, limit, time)
-        assert claim == round_rate(rate, time)
+    for back_off, claim in zip(module.BACK_OFFS, proposed, strict=True):
+        rate = module.rate_at(0.8 * back_off, limit, time)
+        assert claim == module.round_rate(rate, time)
         assert float(claim) == pytest.approx(rate, rel=1e-4)
 
 
 def test_few_claims_and_few_digits_where_checks_take_long():
-    assert [float(c) for c in claims(1.0, 1.0, CONTINUOUS, 0.9, few=True)] == pytest.approx(
+    assert [float(c) for c in module.claims(1.0, 1.0, CONTINUOUS, 0.9, few=True)] == pytest.approx(
         [0.9, 0.5, 0.1], rel=1e-4
     )
-    assert digits(10)[:2] == (10, 12)
-    assert digits() == BITS
+    assert module.digits(10)[:2] == (10, 12)
+    assert module.digits() == module.BITS
 
 
-@pytest.mark.parametrize(
-    ("position", "limit", "time"),
-    [
-        (1.0, np.nan, CONTINUOUS),
-        (1.0, np.inf, CONTINUOUS),
-        (1.0, -1.0, CONTINUOUS),
-        (0.0, 1.0, CONTINUOUS),
-        (0.0, 0.5, DISCRETE),
-        (1.0, 1.5, DISCRETE),
-        (1.0, np.nan, DISCRETE),
-    ],
-)
+@by_rows("position", "limit", "time", time=Time)
 def test_what_is_no_decay_is_not_claimed(position, limit, time):
-    assert list(claims(position, limit, time)) == []
+    assert list(module.claims(position, limit, time)) == []
 
 
 @pytest.mark.parametrize("exponents", [(0, 3), (5, -5), (-40, 17)])
 def test_scaling_is_undone_exactly(exponents):
     Q, bits = np.array([[0.75, -0.5], [-0.5, 3.0]]), 4
-    rows, denominator_log2 = unscale(Q, np.array(exponents), bits)
+    rows, denominator_log2 = module.unscale(Q, np.array(exponents), bits)
     for i, row in enumerate(rows):
         for j, entry in enumerate(row):
             wanted = Fraction(Q[i, j]) / Fraction(2) ** (exponents[i] + exponents[j])
@@ -246,25 +223,25 @@ def test_scaling_is_undone_exactly(exponents):
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e308])
 def test_a_form_beyond_floating_point_is_refused(value):
     with pytest.raises(OverflowError), np.errstate(all="ignore"):
-        round_form(np.array([[value]]), np.array([0]), 20)
+        module.round_form(np.array([[value]]), np.array([0]), 20)
 
 
 @given(st.floats(1e-300, 1e300))
 def test_rates_in_continuous_time_only_get_slower(rate):
-    rounded = round_rate(rate, Time.CONTINUOUS)
+    rounded = module.round_rate(rate, Time.CONTINUOUS)
     assert 0 < rounded <= Fraction(rate)
-    assert rounded >= Fraction(rate) * (1 - Fraction(1, 2 ** (RATE_BITS - 1)))
+    assert rounded >= Fraction(rate) * (1 - Fraction(1, 2 ** (module.RATE_BITS - 1)))
     assert rounded.denominator & (rounded.denominator - 1) == 0
 
 
 @given(st.floats(0, 1, exclude_max=True))
 def test_rates_in_discrete_time_only_get_slower(rate):
-    assert Fraction(rate) <= round_rate(rate, Time.DISCRETE) < 1
+    assert Fraction(rate) <= module.round_rate(rate, Time.DISCRETE) < 1
 
 
 @given(st.integers(20, 1900))
 def test_rates_beyond_floating_point(digits):
     tiny = Fraction(1, 10**digits)
-    rounded = round_rate(tiny, Time.CONTINUOUS)
-    assert tiny * (1 - Fraction(1, 2 ** (RATE_BITS - 1))) <= rounded <= tiny
-    assert round_rate(1 - tiny, Time.DISCRETE) == 1 - rounded
+    rounded = module.round_rate(tiny, Time.CONTINUOUS)
+    assert tiny * (1 - Fraction(1, 2 ** (module.RATE_BITS - 1))) <= rounded <= tiny
+    assert module.round_rate(1 - tiny, Time.DISCRETE) == 1 - rounded

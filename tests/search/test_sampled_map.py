@@ -12,18 +12,10 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from tests.search.support import thesis_robot
+from tests.tables import entry
 
 # Mt, delay, proved, refuted.
-MAP = [
-    ("0.01", 0, 52.0, 57.5),
-    ("0.01", 1, 48.2, 52.6),
-    ("0.01", 2, 42.5, 48.7),
-    ("0.01", 5, 36.1, 38.0),
-    ("0", 0, 76.1, 83.6),
-    ("0", 1, 68.4, 73.0),
-    ("0", 2, 53.1, 77.3),
-    ("0", 5, 44.3, 49.4),
-]
+MAP = entry(__file__, "map")
 QUICK = Limits(optimize_rate=False, max_degree=4)
 
 

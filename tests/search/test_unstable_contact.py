@@ -18,17 +18,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
 from nrs_design.work import Allowance, NotAffordableError
-from tests.proof.systems import (
-    bouncing,
-    bouncing_in_steps,
-    drifting,
-    family,
-    juggling,
-    juggling_among_modes,
-    juggling_in_turns,
-    matrix,
-    sucking_in,
-)
+from tests.proof import systems
 from tests.search.support import thesis_robot
 from tests.search.test_losable_brute_force import rounded
 
@@ -47,7 +37,7 @@ def drawn(seed: int) -> SwitchedSystem:
     push = np.outer([*rng.uniform(-2, 2, 2), 0], [0, 0, 1])
     contact = Contact((Mode("free", rounded(free)),), required=True)
     touching = rounded(free - push).fractions()
-    system = family(touching, time=Time.DISCRETE, names=["touch"])
+    system = systems.family(touching, time=Time.DISCRETE, names=["touch"])
     return replace(system, states=("v", "w", "delta"), contact=contact)
 
 
@@ -83,7 +73,9 @@ def test_what_refutes_random_losable_loops_grows_by_the_definition():
     assert len(refuted) > 4
 
 
-@pytest.mark.parametrize("system", [juggling, juggling_among_modes, juggling_in_turns])
+@pytest.mark.parametrize(
+    "system", [systems.juggling, systems.juggling_among_modes, systems.juggling_in_turns]
+)
 def test_a_sequence_of_contact_and_flight_is_found(system):
     evidence, _ = found_in(system())
     assert [count for _, count in evidence.steps] == [1, 1]
@@ -91,30 +83,32 @@ def test_a_sequence_of_contact_and_flight_is_found(system):
 
 
 def test_a_mode_that_draws_in_is_found_in_continuous_time():
-    evidence, _ = found_in(sucking_in())
+    evidence, _ = found_in(systems.sucking_in())
     assert evidence.steps == (("m0", 1),)
-    assert certify(sucking_in()).verdict is Verdict.REFUTED
-    losable = replace(bouncing(), contact=replace(bouncing().contact, required=True))
+    assert certify(systems.sucking_in()).verdict is Verdict.REFUTED
+    losable = replace(
+        systems.bouncing(), contact=replace(systems.bouncing().contact, required=True)
+    )
     assert "no mode has a real eigenvalue" in found_in(losable)[1]
 
 
 def test_what_decays_has_no_witness():
-    system = bouncing_in_steps()
+    system = systems.bouncing_in_steps()
     losable = replace(system, contact=replace(system.contact, required=True))
     assert found_in(losable) == (None, NOTHING_GROWS)
 
 
 def test_enclosing_a_sequence_is_paid_for(monkeypatch):
     monkeypatch.setattr(unstable_contact, "PER_ENTRY", 1.0)
-    searched = search_contact(Family.of(juggling(), Allowance(1.0)))
+    searched = search_contact(Family.of(systems.juggling(), Allowance(1.0)))
     with pytest.raises(NotAffordableError, match="the enclosure of a sequence would take"):
         next(searched)
 
 
 def turning(kept: str) -> SwitchedSystem:
     """A spring that is too stiff for its steps: it grows in kept contact, and flies away."""
-    free = Mode("free", matrix([[kept, 0], [1, 1]]))
-    system = family([[kept, "-6/5"], [1, 1]], time=Time.DISCRETE, names=["touch"])
+    free = Mode("free", systems.matrix([[kept, 0], [1, 1]]))
+    system = systems.family([[kept, "-6/5"], [1, 1]], time=Time.DISCRETE, names=["touch"])
     return replace(system, states=("v", "delta"), contact=Contact((free,), required=True))
 
 
@@ -128,7 +122,7 @@ def turning_among_modes() -> SwitchedSystem:
 @pytest.mark.parametrize(
     ("system", "verdict", "where"),
     [
-        (drifting(), Verdict.REFUTED, None),
+        (systems.drifting(), Verdict.REFUTED, None),
         (turning_among_modes(), Verdict.INCONCLUSIVE, AT_ANY_DEFLECTION),
     ],
 )
@@ -142,7 +136,7 @@ def test_free_motion_is_judged_first_and_named(system, verdict, where):
 
 def test_what_grows_in_and_out_of_contact_refutes_before_what_grows_in_one_of_them():
     system = turning_among_modes()
-    either = Mode("either", matrix([[1, -2], [1, 1]]))
+    either = Mode("either", systems.matrix([[1, -2], [1, 1]]))
     result = certify(replace(system, modes=(*system.modes, either)))
     assert result.verdict is Verdict.REFUTED
     assert result.evidence.steps == (("either", 1),)
@@ -174,7 +168,7 @@ def following(system: SwitchedSystem) -> SwitchedSystem:
         *rows, last = mode.A.fractions()
         stays = [*(0 for _ in rows), 1]
         row = [*last[:-1], 0] if meets else stays
-        return Mode(f"{mode.name}/{'met' if meets else 'away'}", matrix([*rows, row]))
+        return Mode(f"{mode.name}/{'met' if meets else 'away'}", systems.matrix([*rows, row]))
 
     flying = tuple(cut(mode, meets=meets) for mode in system.free for meets in (True, False))
     names = [tuple(mode.name for mode in part) for part in (system.modes, flying)]

@@ -15,16 +15,9 @@ from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock, Reset, Switching
+from tests.proof import systems
 from tests.proof.graphs import common_quadratic, shape_of
-from tests.proof.systems import (
-    SYSTEMS,
-    bouncing,
-    bouncing_in_steps,
-    family,
-    genuine,
-    matrix,
-    pushed_away,
-)
+from tests.tables import by_rows
 
 
 def twice(system):
@@ -32,7 +25,7 @@ def twice(system):
     return replace(system, modes=(*system.modes, *again))
 
 
-SYSTEM = family([[-1, 0], [0, -1]], [[-2, 0], [0, -1]])
+SYSTEM = systems.family([[-1, 0], [0, -1]], [[-2, 0], [0, -1]])
 
 
 @dataclass(frozen=True)
@@ -82,8 +75,8 @@ TAKEN = (
 
 @pytest.mark.parametrize(("what", "kept", "rounded", "is_refused"), TAKEN)
 def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
-    one, said = matrix([[1]]), saying(shows=what)
-    exact = family([["1/2"]], time=Time.DISCRETE)
+    one, said = systems.matrix([[1]]), saying(shows=what)
+    exact = systems.family([["1/2"]], time=Time.DISCRETE)
     rounding = replace(exact, roundings=(Rounding("x", (one,), (one,)),))
     included = " What single-precision arithmetic rounds in the law is included."
     assert said.claim(rounding) == f"It is so.{rounded}"
@@ -93,11 +86,11 @@ def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
         assert evidence.claim(exact) == "It is so."
     assert not said.covers_rounding
     of_all_contact = saying(shows=what, covers_lost_contact=True)
-    for system in (bouncing(), bouncing_in_steps()):
+    for system in (systems.bouncing(), systems.bouncing_in_steps()):
         assert said.claim(system) == f"It is so.{kept}"
         assert said.claim(replace(system, contact=None)) == "It is so."
         assert of_all_contact.claim(system) == "It is so."
-    system = bouncing()
+    system = systems.bouncing()
     losable = replace(system, contact=replace(system.contact, required=True))
     assert said.find_fault(losable) == (
         "evidence of kind claimed does not cover the loss of contact" if is_refused else None
@@ -109,7 +102,7 @@ def test_what_is_taken_for_granted_is_said(what, kept, rounded, is_refused):
 
 def test_where_the_environment_does_not_act_nothing_pulls():
     """At zero stiffness a mode of contact is one of free motion."""
-    system = bouncing()
+    system = systems.bouncing()
     (free,) = system.contact.free
     slack = replace(system, modes=(Mode("m0", free.A), *system.modes[1:]))
     constant = replace(slack, switching=Switching(fixed_ends=(("m0", "m1"),)))
@@ -134,7 +127,7 @@ def test_where_the_environment_does_not_act_nothing_pulls():
 
 
 def test_a_rate_by_the_step_is_said_in_seconds_too():
-    system = replace(bouncing_in_steps(), contact=None)
+    system = replace(systems.bouncing_in_steps(), contact=None)
     words = "A step takes 0.1 s, so that is exp(-alpha t) with alpha"
     assert saying(rate=Fraction(3, 4)).claim(system) == f"It is so. {words} = 2.5 1/s."
     assert saying(rate=Fraction(2, 3)).claim(system) == f"It is so. {words} >= 3.33333 1/s."
@@ -144,7 +137,8 @@ def test_a_rate_by_the_step_is_said_in_seconds_too():
 
 def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
     in_turns = replace(
-        family([[Fraction(1, 2)]], [[Fraction(1, 3)]], time=Time.DISCRETE), clock=Clock(2, ("m0",))
+        systems.family([[Fraction(1, 2)]], [[Fraction(1, 3)]], time=Time.DISCRETE),
+        clock=Clock(2, ("m0",)),
     )
     assert Claimed().find_unfit(replace(in_turns, clock=None)) is None
     assert Claimed().find_unfit(in_turns) == (
@@ -153,7 +147,7 @@ def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
 
 
 def test_unequal_modes_where_they_are_allowed():
-    unequal = family([[-1]], [[-1, 0], [0, -1]])
+    unequal = systems.family([[-1]], [[-1, 0], [0, -1]])
     for system in (unequal, SYSTEM):
         assert saying(allows_unequal_modes=True).find_fault(system) is None
 
@@ -167,16 +161,7 @@ def test_positive_definite_forms_hold():
     assert Claimed((((2, 1), (1, 2)), ((5,),))).find_fault(SYSTEM) is None
 
 
-@pytest.mark.parametrize(
-    "form",
-    [
-        ((1, 2), (2, 4)),  # singular
-        ((1, 0), (0, -1)),
-        ((0,),),
-        ((2, 1), (0, 2)),  # positive as a form, but not symmetric
-        ((2, 1),),  # not square
-    ],
-)
+@by_rows("form")
 def test_one_bad_form_among_good_ones_is_found(form):
     good = ((2, 1), (1, 2))
     assert Claimed((good, form, good)).find_fault(SYSTEM) == "it fails"
@@ -230,32 +215,22 @@ def test_no_modes_or_two_of_one_name_carry_no_proof():
 
 
 def test_resets_and_unequal_modes_must_be_asked_for():
-    resets = Switching(resets=(Reset("m0", "m1", matrix([[2, 0], [0, 2]])),))
+    resets = Switching(resets=(Reset("m0", "m1", systems.matrix([[2, 0], [0, 2]])),))
     assert "does not cover" in Claimed().find_fault(replace(SYSTEM, switching=resets))
-    assert "equal size" in Claimed().find_fault(family([[-1]], [[-1, 0], [0, -1]]))
+    assert "equal size" in Claimed().find_fault(systems.family([[-1]], [[-1, 0], [0, -1]]))
 
 
-@pytest.mark.parametrize(
-    "example",
-    [
-        "common-quadratic",
-        "common-polynomial",
-        "conewise-mode-quadratic",
-        "conewise-polynomial",
-        "mode-quadratic, discrete",
-        "block-triangular",
-    ],
-)
+@by_rows("example")
 def test_what_is_spread_over_equal_modes_holds_for_all(example):
-    system, evidence = genuine(example)
+    system, evidence = systems.genuine(example)
     spread = evidence.spread(system, twice(system))
     assert spread.find_fault(twice(system)) is None
     assert spread.proved_rate(twice(system)) == evidence.proved_rate(system)
 
 
-@pytest.mark.parametrize("example", SYSTEMS)
+@pytest.mark.parametrize("example", systems.SYSTEMS)
 def test_the_rate_is_one_of_decay_or_there_is_none(example):
-    system, evidence = genuine(example)
+    system, evidence = systems.genuine(example)
     rate = evidence.proved_rate(system)
     assert (rate is None) == (evidence.shows is not Shows.STABILITY)
     assert rate is None or rate > 0
@@ -294,7 +269,7 @@ FACTS = {
 
 @pytest.mark.parametrize("fact", FACTS)
 def test_facts_of_the_kinds(fact):
-    pairs = [genuine(example) for example in SYSTEMS]
+    pairs = [systems.genuine(example) for example in systems.SYSTEMS]
     assert {item.kind for _, item in pairs} == set(KINDS)
     assert {shape_of(item) for _, item in pairs if getattr(item, fact)} == FACTS[fact]
 
@@ -305,16 +280,16 @@ def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
 
 
 def test_only_what_speaks_of_saturation_says_how_motions_begin():
-    assert Claimed().start_size is Claimed().start_rate(pushed_away()) is None
-    pairs = [genuine(example) for example in SYSTEMS]
+    assert Claimed().start_size is Claimed().start_rate(systems.pushed_away()) is None
+    pairs = [systems.genuine(example) for example in systems.SYSTEMS]
     sized = {item.kind for _, item in pairs if item.start_size is not None}
     rated = {item.kind for system, item in pairs if item.start_rate(system) is not None}
     assert sized == rated == {"saturated-ellipsoid"}
 
 
-@pytest.mark.parametrize("example", SYSTEMS)
+@pytest.mark.parametrize("example", systems.SYSTEMS)
 def test_a_second_opinion_is_given_every_form_that_was_decided(example):
-    system, evidence = genuine(example)
+    system, evidence = systems.genuine(example)
     made = []
     assert evidence.find_fault(system, made) is None
     assert made == [form for _, form in evidence.forms(system)]
@@ -347,33 +322,24 @@ def test_a_rate_of_decay_is_positive_and_in_steps_below_one(rate, continuous, di
     assert (evidence.find_rate_misfit(Time.DISCRETE) is None) is discrete
 
 
-@pytest.mark.parametrize(
-    ("M", "square"),
-    [
-        ([[1]], False),
-        ([[1, 2], [3, 4]], True),
-        ([[1, 2], [3]], False),
-        ([[1, 2], [3, 4], [5, 6]], False),
-        ([[1, 2, 3], [4, 5, 6]], False),
-    ],
-)
+@by_rows("M", "square")
 def test_as_many_rows_and_columns_as_asked_for(M, square):
     assert is_square(M, 2) is square
 
 
 def test_evidence_about_every_mode_holds_for_its_equals_too():
-    system, evidence = genuine("no-common-quadratic")
+    system, evidence = systems.genuine("no-common-quadratic")
     assert evidence.spread(system, twice(system)) is evidence
-    system, evidence = genuine("common-quadratic")
+    system, evidence = systems.genuine("common-quadratic")
     assert evidence.spread(system, twice(system)) == evidence
 
 
 def test_the_matrix_of_one_quadratic_function():
     """Of a graph with one form in contact, and of an ellipsoid; of nothing else."""
-    _, common = genuine("common-quadratic")
+    _, common = systems.genuine("common-quadratic")
     (node,) = common.nodes
     assert common.quadratic == ([list(row) for row in node.form], common.denominator_log2)
-    _, region = genuine("saturated-ellipsoid")
+    _, region = systems.genuine("saturated-ellipsoid")
     assert region.quadratic == ([list(row) for row in region.Q], region.denominator_log2)
-    assert genuine("common-polynomial")[1].quadratic is None
-    assert genuine("growing-sequence, average")[1].quadratic is None
+    assert systems.genuine("common-polynomial")[1].quadratic is None
+    assert systems.genuine("growing-sequence, average")[1].quadratic is None

@@ -22,34 +22,14 @@ from nrs_design.certificates.certificate import (
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.contact import Flights
 from nrs_design.proof.enclosure import precision
-from nrs_design.proof.evidence import GrowingSequence, Shows, read_evidence
-from nrs_design.proof.evidence.growing_sequence import (
-    MAX_FACTOR_DENOMINATOR,
-    MAX_STEPS,
-    decides,
-    staying,
-)
+from nrs_design.proof.evidence import GrowingSequence, Shows, growing_sequence, read_evidence
 from nrs_design.proof.evidence.growth import monodromy
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict
-from tests.proof.systems import (
-    bouncing_in_steps,
-    branicky,
-    drifting,
-    expect,
-    family,
-    genuine,
-    juggling,
-    juggling_among_modes,
-    juggling_in_turns,
-    matrix,
-    resets_between,
-    shears,
-    sucking_in,
-)
+from tests.proof import systems
 from tests.support import ends_soon
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
@@ -69,36 +49,36 @@ def signal(*steps, doublings=20):
     return GrowingSequence(named, doublings)
 
 
-GROWING = family([[1, 1], [0, 1]], [[1, 0], [1, 1]], time=STEPS)
+GROWING = systems.family([[1, 1], [0, 1]], [[1, 0], [1, 1]], time=STEPS)
 NOT_SHOWN = "the enclosure of the monodromy matrix does not show growth"
-HUNDRED = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
+HUNDRED = systems.family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
 LONGEST = signal(*[(0, 1), (1, 1)] * 512, doublings=0)
 
 
 def test_a_spectral_radius_of_one_or_less_is_no_growth_however_often_it_is_squared():
-    circle = family([[0, 1], [-1, 0]])
-    below = family([["0.9999999", 0], [0, "1/2"]], time=STEPS)
+    circle = systems.family([[0, 1], [-1, 0]])
+    below = systems.family([["0.9999999", 0], [0, "1/2"]], time=STEPS)
     for k in range(61):
-        expect(below, signal((0, 1), doublings=k), NOT_SHOWN)
+        systems.expect(below, signal((0, 1), doublings=k), NOT_SHOWN)
         if k % 6 == 0:
-            expect(circle, signal((0, "1.5"), doublings=k), NOT_SHOWN)
-            expect(replace(circle, time=STEPS), signal((0, 1), doublings=k), NOT_SHOWN)
+            systems.expect(circle, signal((0, "1.5"), doublings=k), NOT_SHOWN)
+            systems.expect(replace(circle, time=STEPS), signal((0, 1), doublings=k), NOT_SHOWN)
 
 
 def test_the_longest_signal_and_the_most_work(monkeypatch):
     longer = replace(LONGEST, steps=(*LONGEST.steps, ("m0", ONE)))
-    expect(GROWING, LONGEST, None)
-    expect(GROWING, longer, "does not cover")
+    systems.expect(GROWING, LONGEST, None)
+    systems.expect(GROWING, longer, "does not cover")
     assert longer.find_misfit(GROWING) == "the sequence is empty or too long"
     too_long = "the sequence is too long for so many states"
-    expect(HUNDRED, signal(*[(0, 1)] * 5, doublings=0), NOT_SHOWN)
-    expect(HUNDRED, signal(*[(0, 1)] * 6, doublings=0), too_long)
+    systems.expect(HUNDRED, signal(*[(0, 1)] * 5, doublings=0), NOT_SHOWN)
+    systems.expect(HUNDRED, signal(*[(0, 1)] * 6, doublings=0), too_long)
     monkeypatch.setattr("nrs_design.proof.evidence.growing_sequence.MAX_WORK", 2 * 2**3)
-    expect(GROWING, signal((0, 1), (1, 1), doublings=2), None)
+    systems.expect(GROWING, signal((0, 1), (1, 1), doublings=2), None)
     monkeypatch.setattr("nrs_design.proof.evidence.growing_sequence.MAX_WORK", 2 * 2**3 - 1)
-    expect(GROWING, signal((0, 1), (1, 1), doublings=2), too_long)
-    bounce = in_contact((("m0", MAX_STEPS), ("free", 1)), (ONE, Fraction(2)))
-    expect(juggling(), bounce, too_long)
+    systems.expect(GROWING, signal((0, 1), (1, 1), doublings=2), too_long)
+    bounce = in_contact((("m0", growing_sequence.MAX_STEPS), ("free", 1)), (ONE, Fraction(2)))
+    systems.expect(systems.juggling(), bounce, too_long)
 
 
 LONG = ((1, 0), (0, 1)), ((2**400_000, 1), (0, 1))
@@ -109,21 +89,23 @@ TOO_LARGE = "the numbers of the average of the modes are too large to check"
     ("system", "evidence", "fault", "error"),
     [
         (
-            shears(),
+            systems.shears(),
             mixed(HALF + Fraction(1, 2**64 + 1), HALF - Fraction(1, 2**64 + 1)),
             "the weights have too many digits",
             TooLargeError,
         ),
         (
-            family([[1]], [[-1]]),
+            systems.family([[1]], [[-1]]),
             GrowingSequence((("m0", Fraction(1, 3)),) * 3),
             "a mode is named twice in an average",
             TooLargeError,
         ),
-        (shears(), GrowingSequence((("m9", ONE),)), "do not exist", KeyError),
+        (systems.shears(), GrowingSequence((("m9", ONE),)), "do not exist", KeyError),
         *(
             (
-                replace(shears(), modes=tuple(Mode(f"m{i}", A) for i, A in enumerate(matrices))),
+                replace(
+                    systems.shears(), modes=tuple(Mode(f"m{i}", A) for i, A in enumerate(matrices))
+                ),
                 mixed(HALF, HALF),
                 TOO_LARGE,
                 (ValueError, TooLargeError),
@@ -137,16 +119,16 @@ TOO_LARGE = "the numbers of the average of the modes are too large to check"
     ids=("long", "thrice", "unknown", "coprime", "large"),
 )
 def test_what_is_read_is_said_in_words_before_it_is_checked(system, evidence, fault, error):
-    expect(system, evidence, fault)
+    systems.expect(system, evidence, fault)
     with pytest.raises(error) if error else nullcontext():
         evidence.claim(system)
 
 
 def test_a_sequence_is_read_as_it_is_written():
     """With the reset that is taken, or the factor of a motion, where there is one."""
-    system, two_ways = genuine("growing-sequence, two ways")
+    system, two_ways = systems.genuine("growing-sequence, two ways")
     for evidence, fields in (
-        (staying("m0"), {"steps": [["m0", "1"]]}),
+        (growing_sequence.staying("m0"), {"steps": [["m0", "1"]]}),
         (BOUNCE, {"steps": [["m0", "1"], ["free", "1"]], "factor": ["2427/1250", "19417/10000"]}),
     ):
         assert evidence.to_fields() == fields
@@ -159,13 +141,13 @@ def test_a_sequence_is_read_as_it_is_written():
     assert read_evidence(fields, system) == two_ways
     with pytest.raises(ValueError, match="one edge for each"):
         read_evidence({**fields, "edges": [1]}, system)
-    assert "edges" not in genuine("growing-sequence, period")[1].to_fields()
+    assert "edges" not in systems.genuine("growing-sequence, period")[1].to_fields()
 
 
 def test_the_order_of_time_is_that_of_the_steps():
     # From m0 to m1 the state is swapped, back it is left: only the order tells which is first.
-    resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))
-    system = family(
+    resets = systems.resets_between(("m0", "m1", [[0, 1], [0, 0]]))
+    system = systems.family(
         [[2, 0], [0, "1/2"]],
         [["1/2", 0], [0, 4]],
         time=Time.DISCRETE,
@@ -179,13 +161,13 @@ def test_the_order_of_time_is_that_of_the_steps():
 
 
 def test_one_value_of_a_constant_parameter_refutes():
-    rows = [mode.A.fractions() for mode in branicky().modes]
-    system = family(
+    rows = [mode.A.fractions() for mode in systems.branicky().modes]
+    system = systems.family(
         rows[0], rows[1], rows[0], rows[1], switching=Switching(
             fixed_ends=(("m0", "m2"), ("m1", "m3"))
         )
     )  # fmt: skip
-    _, evidence = genuine("growing-sequence, period")
+    _, evidence = systems.genuine("growing-sequence, period")
     assert evidence.find_fault(system) is None
     crossed = replace(evidence, steps=tuple(
         ({"m1": "m3"}.get(name, name), dwell) for name, dwell in evidence.steps
@@ -195,14 +177,14 @@ def test_one_value_of_a_constant_parameter_refutes():
 
 def test_enormous_modes_do_not_hang_or_overflow():
     for time in Time:
-        system = family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
+        system = systems.family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
         with ends_soon():
             signal((0, 4096), doublings=60).find_fault(system)
 
 
 def test_every_step_takes_its_own_reset():
-    resets = resets_between(("m0", "m1", [[2]]), ("m0", "m1", [[3]]))
-    system = family([[1]], [["1/5"]], time=STEPS, switching=Switching(resets=resets))
+    resets = systems.resets_between(("m0", "m1", [[2]]), ("m0", "m1", [[3]]))
+    system = systems.family([[1]], [["1/5"]], time=STEPS, switching=Switching(resets=resets))
     steps = signal((0, 1), (1, 1), (0, 1), (1, 1)).steps
     for edges, factor in (((0, 0, 0, 0), 4), ((1, 0, 0, 0), 6), ((1, 0, 1, 0), 9)):
         with precision():
@@ -213,19 +195,19 @@ BOUNCE = in_contact((("m0", 1), ("free", 1)), (Fraction(19416, 10000), Fraction(
 
 
 def test_growth_in_contact_says_nothing_of_a_common_function_unless_it_is_of_one_mode():
-    system = juggling()
+    system = systems.juggling()
     assert BOUNCE.shown(system) is BOUNCE.shows is Shows.INSTABILITY
     assert verdict_of(system, (BOUNCE,)) is Verdict.REFUTED
     assert common_quadratic_of(system, (BOUNCE,)) is CommonQuadraticStatus.UNKNOWN
     drawn = in_contact((("m0", 1),), (Fraction(999, 1000), Fraction(1001, 1000)))
-    assert common_quadratic_of(sucking_in(), (drawn,)) is CommonQuadraticStatus.IMPOSSIBLE
-    digits = 2 - Fraction(1, MAX_FACTOR_DENOMINATOR + 1)
-    expect(system, replace(BOUNCE, factor=(BOUNCE.factor[0], digits)), "too many digits")
+    assert common_quadratic_of(systems.sucking_in(), (drawn,)) is CommonQuadraticStatus.IMPOSSIBLE
+    digits = 2 - Fraction(1, growing_sequence.MAX_FACTOR_DENOMINATOR + 1)
+    systems.expect(system, replace(BOUNCE, factor=(BOUNCE.factor[0], digits)), "too many digits")
 
 
 def test_the_signs_of_the_other_eigenvalue_count_for_themselves():
     """The sequence has a second eigenvalue beyond one, with an eigenvector of its own."""
-    system = juggling()
+    system = systems.juggling()
     A, F = (np.array(m.A.floats()) for m in (*system.modes, *system.contact.free))
     values, vectors = np.linalg.eig(F @ A)
     for value, v in zip(values, vectors.T, strict=True):
@@ -241,9 +223,9 @@ A, LOST = Assumption("a.kind"), Assumption("lost.so")
 
 
 def test_growth_in_kept_contact_alone_is_a_statement_of_its_own():
-    system = juggling()
+    system = systems.juggling()
     system = replace(system, assumptions=(A,), contact=replace(system.contact, loss=LOST))
-    kept = staying("m0")
+    kept = growing_sequence.staying("m0")
     period = GrowingSequence((("m0", Fraction(1)),), 4)
     for evidence in (kept, period):
         assert evidence.shown(system) is Shows.INSTABILITY_IN_CONTACT
@@ -263,8 +245,8 @@ def test_growth_in_kept_contact_alone_is_a_statement_of_its_own():
 
 
 def test_where_free_motion_is_among_the_modes_signs_count_too():
-    system = juggling_among_modes()
-    kept = staying("m0")
+    system = systems.juggling_among_modes()
+    kept = growing_sequence.staying("m0")
     assert kept.shown(system) is Shows.INSTABILITY_IN_CONTACT
     assert refuted_in(system, (kept,)) == "where contact is lost and made at any deflection"
     assert "at any deflection" in kept.claim(system)
@@ -276,8 +258,8 @@ def test_where_free_motion_is_among_the_modes_signs_count_too():
 
 
 def test_free_motion_that_is_not_stable_refutes():
-    system = drifting()
-    evidence = staying("free")
+    system = systems.drifting()
+    evidence = growing_sequence.staying("free")
     assert evidence.find_fault(system) is None
     assert evidence.shown(system) is Shows.INSTABILITY
     assert "the deflection aside" in evidence.claim(system)
@@ -285,29 +267,32 @@ def test_free_motion_that_is_not_stable_refutes():
     assert common_quadratic_of(system, (evidence,)) is CommonQuadraticStatus.UNKNOWN
     kept = replace(system, contact=replace(system.contact, required=False))
     assert "do not exist" in evidence.find_fault(kept)
-    assert juggling_in_turns().free_motions() == kept.free_motions() == ()
+    assert systems.juggling_in_turns().free_motions() == kept.free_motions() == ()
     # At rest in the air, a deflection stays what it is: that is no instability.
-    assert "is stable" in staying("free").find_fault(
-        replace(bouncing_in_steps(), contact=replace(bouncing_in_steps().contact, required=True))
+    assert "is stable" in growing_sequence.staying("free").find_fault(
+        replace(
+            systems.bouncing_in_steps(),
+            contact=replace(systems.bouncing_in_steps().contact, required=True),
+        )
     )
 
 
 def test_a_mode_decides_where_contact_is_kept_and_in_the_air():
     for system, mode, expected in (
-        (juggling(), "m0", False),
-        (replace(juggling(), contact=None), "m0", True),
-        (drifting(), "free", True),
+        (systems.juggling(), "m0", False),
+        (replace(systems.juggling(), contact=None), "m0", True),
+        (systems.drifting(), "free", True),
     ):
-        assert decides(system, mode) is expected
+        assert growing_sequence.decides(system, mode) is expected
 
 
 def test_growth_that_keeps_the_signs_is_that_of_all_that_is_enclosed():
-    system, evidence = genuine("growing-sequence, contact")
+    system, evidence = systems.genuine("growing-sequence, contact")
     assert evidence.factor is not None
     assert evidence.find_fault(system) is None
     name = evidence.steps[0][0]
     mode = next(mode for mode in system.every_mode if mode.name == name)
-    still = Mode("still", matrix([[v / 2 for v in row] for row in mode.A.fractions()]))
+    still = Mode("still", systems.matrix([[v / 2 for v in row] for row in mode.A.fractions()]))
     system = replace(system, modes=(*system.modes, still), enclosures=((name, "still"),))
     assert "does not show a growing motion" in evidence.find_fault(system)
 
@@ -323,4 +308,4 @@ def test_growth_that_keeps_the_signs_is_that_of_all_that_is_enclosed():
 )
 def test_what_cannot_be_put_into_words_is_not_read(fields, reason):
     with pytest.raises(ValueError, match=reason):
-        GrowingSequence.from_fields(fields, family([[1]]))
+        GrowingSequence.from_fields(fields, systems.family([[1]]))

@@ -10,6 +10,7 @@ from nrs_design.proof.evidence import OffsetEllipsoid
 from nrs_design.proof.mode import Time
 from tests.proof.systems import crowded, genuine
 from tests.proof.truth import holds, is_in_other_units, offset_forms
+from tests.tables import by_rows
 
 EXAMPLES = (
     "offset-ellipsoid",
@@ -60,17 +61,7 @@ def test_forms_are_those_of_the_definition(time):
     assert all(is_in_other_units(form, wanted) for form, wanted in pairs)
 
 
-@pytest.mark.parametrize(
-    ("roundings", "fault"),
-    [
-        ((5, 17), None),
-        ((), None),
-        ((5,), "there is not one multiplier for each rounding"),
-        ((5, 17, 0), "there is not one multiplier for each rounding"),
-        ((-1, 17), "a multiplier is negative"),
-        ((5, -1), "a multiplier is negative"),
-    ],
-)
+@by_rows("roundings", "fault")
 def test_all_roundings_or_none(roundings, fault):
     system = crowded(Time.DISCRETE)
     item = replace(supposed(system), roundings=roundings)

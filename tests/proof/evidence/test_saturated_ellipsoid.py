@@ -14,15 +14,7 @@ from nrs_design.certificates.second_opinion import agrees
 from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.saturation import Saturation
-from tests.proof.systems import (
-    cut_off,
-    expect,
-    family,
-    genuine,
-    kept,
-    pushed_away,
-    pushed_away_in_steps,
-)
+from tests.proof import systems
 from tests.proof.truth import holds
 
 
@@ -45,7 +37,7 @@ STEPS = of_one_state(25, -9, "31/32", "3/2", (6, 4))
 @pytest.mark.parametrize(
     ("system", "evidence", "rate"),
     # A thirty-second of it is lost in a second, or in every tenth of a second.
-    [(pushed_away(), HELD, "1/32"), (pushed_away_in_steps(), STEPS, "10/32")],
+    [(systems.pushed_away(), HELD, "1/32"), (systems.pushed_away_in_steps(), STEPS, "10/32")],
 )
 def test_a_scalar_loop_decays_from_inside_of_its_region(system, evidence, rate):
     assert agrees(system, evidence)
@@ -57,11 +49,11 @@ def test_a_scalar_loop_decays_from_inside_of_its_region(system, evidence, rate):
     fields = {"kind": evidence.kind, **evidence.to_fields()}
     assert read_evidence(fields, system) == evidence
     with pytest.raises(ValueError, match="does not say what saturates"):
-        read_evidence(fields, family([[-1]]))
+        read_evidence(fields, systems.family([[-1]]))
 
 
 def test_a_step_of_unknown_length_has_no_rate_in_seconds():
-    system = replace(pushed_away_in_steps(), sample_time=None)
+    system = replace(systems.pushed_away_in_steps(), sample_time=None)
     assert STEPS.start_rate(system) == Fraction(1, 32)
     assert "A step takes" not in STEPS.claim(system)
 
@@ -74,9 +66,9 @@ def test_a_step_of_unknown_length_has_no_rate_in_seconds():
 )
 def test_nothing_is_shown_from_outside_of_the_known_region(h, q, level, rate):
     evidence = of_one_state(q, h, rate, level)
-    if evidence.find_fault(pushed_away()) is None:
+    if evidence.find_fault(systems.pushed_away()) is None:
         assert level < 1
-        assert holds(pushed_away(), evidence)
+        assert holds(systems.pushed_away(), evidence)
 
 
 @given(
@@ -87,7 +79,7 @@ def test_nothing_is_shown_from_outside_of_the_known_region(h, q, level, rate):
 )
 def test_no_region_in_steps_is_larger_than_that_of_the_motions(h, q, rate, level):
     """It is |x| < 2, by hand."""
-    system = pushed_away_in_steps()
+    system = systems.pushed_away_in_steps()
     evidence = of_one_state(q, h, rate, level, (6, 4))
     if evidence.find_fault(system) is None:
         assert level < 2
@@ -96,29 +88,29 @@ def test_no_region_in_steps_is_larger_than_that_of_the_motions(h, q, rate, level
 
 
 def test_a_denominator_may_be_as_long_as_is_read():
-    system = pushed_away()
+    system = systems.pushed_away()
     (signal,) = system.saturation.signals
     wide = (replace(signal, limit=Fraction(4)),)
     system = replace(system, saturation=replace(system.saturation, signals=wide))
     long = replace(HELD, Q=((1 << MAX_INTEGER_BITS - 1,),), denominator_log2=MAX_INTEGER_BITS)
-    expect(system, long, None)
+    systems.expect(system, long, None)
     longer = replace(long, denominator_log2=MAX_INTEGER_BITS + 1)
-    expect(system, longer, "the denominator of Q")
-    expect(system, replace(HELD, denominator_log2=10**400), "the denominator of")
-    expect(system, replace(HELD, H_denominator_log2=10**400), "the denominator of")
+    systems.expect(system, longer, "the denominator of Q")
+    systems.expect(system, replace(HELD, denominator_log2=10**400), "the denominator of")
+    systems.expect(system, replace(HELD, H_denominator_log2=10**400), "the denominator of")
 
 
 def test_kept_contact_has_no_conditions_of_flight():
-    system, evidence = genuine("saturated-ellipsoid")
+    system, evidence = systems.genuine("saturated-ellipsoid")
     assert "contact is kept" not in evidence.claim(system)
-    expect(kept(system), evidence, None)
+    systems.expect(systems.kept(system), evidence, None)
 
 
 def test_every_choice_of_arguments_and_rows_is_needed():
     """Two signals, one in the other: x' = x + s1 + s2, s1 = sat(-x) and s2 = sat(s1 - x)."""
-    signals = cut_off("s1", 2, [[1]], [[-1]]), cut_off("s2", 1, [[1]], [[-1, 1]])
-    what = Saturation(signals, pushed_away().saturation.start)
-    system = replace(pushed_away(), modes=family([[-2]]).modes, saturation=what)
+    signals = systems.cut_off("s1", 2, [[1]], [[-1]]), systems.cut_off("s2", 1, [[1]], [[-1, 1]])
+    what = Saturation(signals, systems.pushed_away().saturation.start)
+    system = replace(systems.pushed_away(), modes=systems.family([[-2]]).modes, saturation=what)
     # The last vertex alone bars this: from x = 3 it flies away, and h2 = -1/4 is no pull.
     weak = of_one_state(16, (-16, -4), "1/64", "7/2", (8, 5))
     assert "does not decrease" in weak.find_fault(system)
@@ -126,7 +118,7 @@ def test_every_choice_of_arguments_and_rows_is_needed():
 
 
 def test_rounding_is_asked_for():
-    system, evidence = genuine("saturated-ellipsoid, in steps")
+    system, evidence = systems.genuine("saturated-ellipsoid, in steps")
     assert evidence.covers_rounding
     assert "single-precision arithmetic rounds in the law is included" in evidence.claim(system)
     negative = replace(evidence, roundings=tuple(-tau - 1 for tau in evidence.roundings))
@@ -145,7 +137,7 @@ def test_rounding_is_asked_for():
 
 def test_rows_may_differ_from_mode_to_mode():
     """Each is held against its limit, and counts in its own mode."""
-    system, evidence = genuine("saturated-ellipsoid, in steps")
+    system, evidence = systems.genuine("saturated-ellipsoid, in steps")
     each = replace(evidence, H=evidence.H * 3)
     assert each.find_fault(system) is None
     assert holds(system, each)

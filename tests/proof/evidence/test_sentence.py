@@ -3,8 +3,6 @@
 from dataclasses import replace
 from fractions import Fraction
 
-import pytest
-
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
@@ -13,7 +11,7 @@ from nrs_design.proof.switching import Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
 from tests.proof.rows import made
 from tests.proof.systems import bouncing, bouncing_in_steps, bouncing_in_turns, family, matrix
-from tests.tables import rows
+from tests.tables import by_rows
 
 HALF = Fraction(1, 2)
 
@@ -76,7 +74,7 @@ def test_a_constant_in_front_is_said():
     assert said.endswith("and with some constant c that is the same for all signals.")
 
 
-@pytest.mark.parametrize(("rules", "name", "words"), rows(__file__, "test_words_for_the_signals"))
+@by_rows("rules", "name", "words")
 def test_words_for_the_signals(rules, name, words):
     time = Time(name)
     system = family([[-1]], [[-1]], time=time, switching=made(Switching, rules))

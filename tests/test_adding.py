@@ -8,8 +8,8 @@ from typing import get_args
 
 import pytest
 
-from nrs_design.axis import COMMAND_UNITS
 from nrs_design.controllers.laws import LAWS as CONTROL
+from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.models.contact import LAWS as CONTACT
 from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.proof.evidence import KINDS as EVIDENCE

@@ -69,7 +69,6 @@ CHECKING = (
     "proof",
     "models",
     "errors",
-    "axis",
     "files",
     "printable",
     "wings",

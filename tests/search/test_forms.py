@@ -24,7 +24,7 @@ from nrs_design.search.graphs import (
     search_polynomial,
     search_together,
 )
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,

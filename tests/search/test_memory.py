@@ -28,7 +28,7 @@ from nrs_design.search.memory import (
     words_in_norms,
 )
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.literature.test_growth_per_step import divided
 from tests.proof.systems import ando_shih, family, golden, lossy_network
 

@@ -29,7 +29,7 @@ from nrs_design.search.rates import (
     round_rate,
     unscale,
 )
-from nrs_design.work import Allowance, Cost, NotAffordableError
+from nrs_design.search.work import Allowance, Cost, NotAffordableError
 from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
 

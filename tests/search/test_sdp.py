@@ -21,7 +21,7 @@ from nrs_design.search.sdp import (
     symmetric_basis,
     unpack,
 )
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.truth import determinant, is_definite
 from tests.support import ends_soon
 

@@ -15,7 +15,7 @@ from nrs_design.search.unstable_value import (
     search_switching_at_values,
     search_value,
 )
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.systems import (
     branicky,
     dayawansa_martin,

@@ -274,7 +274,8 @@ def as_one(name: str) -> str:
 def test_only_the_pipeline_calls_the_stages():
     """Published matrices are certified as they are, and a re-check builds the plant of its spec.
 
-    The axes of a ROS 2 controller come from no spec, so no other stage is before their proof.
+    The axes of a ROS 2 controller come from no spec, so no other stage is before their proof. A
+    monitor takes the ranges of the motor from the plant of its spec.
     """
     callers = {
         (as_one(name), verb)
@@ -288,6 +289,7 @@ def test_only_the_pipeline_calls_the_stages():
     assert {name for name, _ in callers} == {
         "nrs_design.pipeline",
         "nrs_design.loop.assemble",
+        "nrs_design.exporters.monitor_limits",
         "nrs_design.thesis.switching",
         "nrs_design.ros2.check",
         "nrs_design.ros2.export",

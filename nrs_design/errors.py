@@ -123,35 +123,6 @@ class OutputError(NrsDesignError):
     rule = "NRS005"
 
 
-class DataError(NrsDesignError):
-    """Measured data that cannot be used as they are."""
-
-    rule = "NRS006"
-
-
-class PoseError(NrsDesignError):
-    """A pose (phi, psi, d), in rad and m, that the robot cannot take.
-
-    The leg that cannot reach it is overstretched, or folded too far, by the excess in m.
-    """
-
-    rule = "NRS007"
-
-    def __init__(
-        self,
-        message: str,
-        *,
-        leg: str | None = None,
-        excess: float | None = None,
-        pose: tuple[float, float, float] | None = None,
-        remedy: str | None = None,
-    ) -> None:
-        super().__init__(message, remedy=remedy)
-        self.leg = leg
-        self.excess = excess
-        self.pose = pose
-
-
 class ClockError(NrsDesignError):
     """Work that the clock stopped before its budget was used up: nothing is decided."""
 

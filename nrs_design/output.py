@@ -16,7 +16,6 @@ from nrs_design.files import is_device_name
 # First bytes of our files, which new files of the same kind may replace.
 CERTIFICATE = b'{\n  "schema": "nrs-design/certificate/'
 EXPORT = b'{\n  "schema": "nrs-design/export/'
-COQ = b"(* nrs-design proof for Coq"
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
 C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"

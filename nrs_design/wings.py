@@ -1,4 +1,4 @@
-"""Wings of the package: their commands, and access of the core to them.
+"""Wings of the package: their commands and formats, and access of the core to them.
 
 A wing is a folder of the package. It imports the core; the core never imports a wing, but asks for
 one here when it is needed. Without its folder, the rest works, and says what is missing.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import import_module
+from importlib.util import find_spec
 from types import MappingProxyType, ModuleType
 
 from nrs_design.errors import NrsDesignError
@@ -19,13 +20,21 @@ WINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "identification": ("identify", "audit"),
         "ros2": ("ros2",),
         "thesis": ("reproduce",),
+        "coq": (),
     }
 )
+# Wings by the format of `nrs-design export` that each has: the module `WING.export`.
+FORMATS: Mapping[str, str] = MappingProxyType({"coq": "coq"})
 
 
 def wing_of(command: str) -> str | None:
     """Return the wing that has a command; None for those of the core."""
     return next((wing for wing, commands in WINGS.items() if command in commands), None)
+
+
+def is_installed(wing: str) -> bool:
+    """Return whether the folder of a wing is there; nothing of it is loaded."""
+    return find_spec(f"nrs_design.{wing}") is not None
 
 
 def load_wing(wing: str, module: str) -> ModuleType:

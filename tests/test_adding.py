@@ -8,8 +8,8 @@ from typing import get_args
 
 import pytest
 
-from nrs_design.axis import COMMAND_UNITS
 from nrs_design.controllers.laws import LAWS as CONTROL
+from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.models.contact import LAWS as CONTACT
 from nrs_design.models.contact import LINEAR_LAWS
 from nrs_design.proof.evidence import KINDS as EVIDENCE
@@ -57,7 +57,7 @@ ALLOWED = {
     ("nrs_design.design.proved_margins", "Elastic"),
     ("nrs_design.design.proved_margins", "KelvinVoigt"),
     # The library for Coq has theorems about one kind of evidence.
-    ("nrs_design.exporters.formats.coq", "FormsOnGraph"),
+    ("nrs_design.coq.export", "FormsOnGraph"),
 }
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.cli.app import COMMANDS
-from nrs_design.wings import WINGS
+from nrs_design.wings import FORMATS, WINGS
 from tests.package import FILES, nodes_of
 from tests.support import ROOT
 
@@ -26,17 +26,19 @@ BETWEEN_WINGS = {("thesis", "robot")}
 REACHED = {
     # Commands: any of the table.
     ("nrs_design.cli.app", None, None),
+    # Formats of an export: any of the table.
+    ("nrs_design.exporters", None, None),
     # A spec of kind robot has a page of its own.
     ("nrs_design.cli.report", "robot", "pipeline"),
     ("nrs_design.cli.report", "robot", "reporting.robot"),
     # Records and runs, from the library.
     ("nrs_design.api.identified", "identification", "api.library"),
     ("nrs_design.api.study", "identification", "api.library"),
-    # A recorded command is a record.
 }
 STAGES = {"models", "design", "loop", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
 DOORS = {
+    "nrs_design.models.axis",
     "nrs_design.models.contact",
     "nrs_design.search.certification",
     "nrs_design.search.method",
@@ -169,10 +171,11 @@ def test_the_core_reaches_wings_in_these_places_only():
     assert {f"nrs_design.{at}.{inner}" for _, at, inner in REACHED if at} <= FILES.keys()
 
 
-def test_every_command_of_a_wing_is_in_the_module_of_its_name():
+def test_every_command_and_format_of_a_wing_is_in_its_module():
     modules = {f"nrs_design.{name}.cli.{c}" for name, commands in WINGS.items() for c in commands}
     assert modules <= FILES.keys()
     assert {c for commands in WINGS.values() for c in commands} <= set(COMMANDS)
+    assert {f"nrs_design.{wing}.export" for wing in FORMATS.values()} <= FILES.keys()
 
 
 def test_no_module_imports_itself_by_way_of_others():
@@ -191,7 +194,7 @@ def test_no_module_imports_itself_by_way_of_others():
 def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
     """What a search begins, and where it ends, is counted: a clock would differ under load."""
     assert {item.source for item in imports() if item.target == "time"} == {
-        "nrs_design.work",
+        "nrs_design.search.work",
         # How long something took, told beside what was found.
         "nrs_design.search.acceptance",
         "nrs_design.pipeline.runs",
@@ -271,7 +274,8 @@ def as_one(name: str) -> str:
 def test_only_the_pipeline_calls_the_stages():
     """Published matrices are certified as they are, and a re-check builds the plant of its spec.
 
-    The axes of a ROS 2 controller come from no spec, so no other stage is before their proof.
+    The axes of a ROS 2 controller come from no spec, so no other stage is before their proof. A
+    monitor takes the ranges of the motor from the plant of its spec.
     """
     callers = {
         (as_one(name), verb)
@@ -363,6 +367,7 @@ def test_the_reader_of_imports_sees_them():
 MIRRORED = (
     "certificates",
     "cli",
+    "coq",
     "exporters",
     "gating",
     "loop",

@@ -1,5 +1,6 @@
 """Each wing can be taken away: the core is whole without it, and says what is missing."""
 
+import json
 import shutil
 from types import SimpleNamespace
 
@@ -7,7 +8,7 @@ import pytest
 
 import nrs_design.wings
 from nrs_design.errors import NrsDesignError
-from nrs_design.wings import WINGS, load_wing, wing_of
+from nrs_design.wings import FORMATS, WINGS, load_wing, wing_of
 from tests.package import FILES, PACKAGE
 from tests.support import ROOT, SOFT_TISSUE, started
 
@@ -62,7 +63,8 @@ def test_the_core_is_whole_without_a_wing(house):
     where = house.run("-c", "import nrs_design; print(nrs_design.__file__)").stdout
     assert where.startswith(str(house.folder))
     text = " ".join(house.program("--help").stdout.split())
-    assert f"(the wing {house.wing} is not installed)" in text
+    said = f"(the wing {house.wing} is not installed)"
+    assert text.count(said) == len(WINGS[house.wing])
     done = house.program("certify-switching", SOFT_TISSUE)
     assert done.returncode == 0, done.stderr
     assert "PROVED" in done.stdout
@@ -78,6 +80,22 @@ def test_a_command_of_a_missing_wing_ends_in_one_message(house):
                 f"error[NRS000]: the wing {house.wing} is not installed"
             ), done.stderr
             assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("house", FORMATS.values(), indirect=True)
+def test_a_format_of_a_missing_wing_ends_in_one_message_and_the_others_stay(house):
+    missing = [name for name, wing in FORMATS.items() if wing == house.wing]
+    for name in missing:
+        done = house.program("export", SOFT_TISSUE, "--format", name, "--out", ".")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr.startswith(f"error[NRS000]: the wing {house.wing} is not installed")
+    listed = json.loads(house.program("export", "--list", "--json").stdout)["formats"]
+    names = {entry["name"] for entry in listed}
+    assert "c" in names
+    assert names.isdisjoint(missing)
+    done = house.program("export", SOFT_TISSUE, "--format", "json", "--out", ".")
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.slow

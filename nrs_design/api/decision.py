@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.api.proof_facts import blocked_facts, certification_facts, margins_facts
 from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
 from nrs_design.certificates.catalogue import sentences
+from nrs_design.certificates.ownership import check_certificate, write_certificate
 from nrs_design.errors import OutputError, SpecError
 from nrs_design.output import PAGE, check_html, write_output
-from nrs_design.ownership import check_certificate, write_certificate
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.scenarios import judged_if_stable
 from nrs_design.proof.text import counted

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.optimum import Optimum
 from nrs_design.api.result import AbstractResult, Figures
+from nrs_design.certificates.ownership import check_certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters import known_format
 from nrs_design.exporters.write import check_places, places, write_export
-from nrs_design.ownership import check_certificate
 from nrs_design.pipeline.design import placed
 
 if TYPE_CHECKING:

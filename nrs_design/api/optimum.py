@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.result import AbstractResult, Figures, drawn
-from nrs_design.axis import unit
+from nrs_design.models.axis import unit
 from nrs_design.pipeline.design import Designed, run_analysis
 from nrs_design.proof.bounds import lower_float, upper_float
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import unit
 from nrs_design.certificates.catalogue import sentences
+from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design.api.result import AbstractResult, Figures, evidence_drawings
-from nrs_design.axis import axis_with
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.prove import Verification
 from nrs_design.certificates.verify import verify as verify_file
+from nrs_design.models.axis import axis_with
 from nrs_design.pipeline.certification import recorded_certification
 from nrs_design.spec import read_spec
 

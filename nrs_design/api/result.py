@@ -9,8 +9,8 @@ from html import escape
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import about
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import about
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

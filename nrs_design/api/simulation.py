@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.result import AbstractResult, Figures
-from nrs_design.axis import unit
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
 
-from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.models.axis import axis_with
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.mode import Time
 from nrs_design.spec.faults import Location

@@ -16,9 +16,9 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     if not certificate.gains:
         return {}
     # Controllers are slow to load, and a certificate of given matrices has none.
-    from nrs_design.axis import COMMAND_UNITS, axis_with
     from nrs_design.controllers.controller_design import units_of
     from nrs_design.loop.assumptions import command_in
+    from nrs_design.models.axis import COMMAND_UNITS, axis_with
 
     system = certificate.system
     command = command_in(system.assumptions)

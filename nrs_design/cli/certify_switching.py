@@ -58,8 +58,8 @@ def certify_switching(
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.api.decision import Decision, Further
+    from nrs_design.certificates.ownership import check_certificate
     from nrs_design.output import CERTIFICATE, check_place
-    from nrs_design.ownership import check_certificate
     from nrs_design.pipeline.certification import Overrides, find_relief, search_limits
     from nrs_design.pipeline.runs import run_certification
 
@@ -120,7 +120,7 @@ def _next_steps(result: Result, asked: Mapping[str, bool]) -> tuple[str, ...]:
 
 def _write(result: Result, path: Path | None) -> Path | None:
     """Write the certificate, if there is one and it is asked for; return where it is."""
-    from nrs_design.ownership import write_certificate
+    from nrs_design.certificates.ownership import write_certificate
 
     if result.certificate is None or path is None:
         return None

@@ -100,7 +100,7 @@ def command(
 
 def take_spec(path: Path) -> LoadedSpec:
     """Read a spec, and say everything until the end of the command about its axis."""
-    from nrs_design.axis import take
+    from nrs_design.models.axis import take
     from nrs_design.spec import read_spec
 
     loaded = read_spec(path)

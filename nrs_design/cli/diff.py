@@ -14,7 +14,7 @@ from nrs_design.cli.tables import print_table
 from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
-    from nrs_design.comparison import Comparison, Side
+    from nrs_design.pipeline.comparison import Comparison, Side
 
 
 @command("diff")
@@ -31,7 +31,7 @@ def diff(
 
     Example: nrs-design diff specs/neuroboscope/soft-tissue.nrs.yaml reports/soft-tissue.cert.json
     """
-    from nrs_design.comparison import compare
+    from nrs_design.pipeline.comparison import compare
 
     with progress("comparing") as step:
         found = compare(before, after, step)

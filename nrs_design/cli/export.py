@@ -130,9 +130,9 @@ def _export_design(
     spec: Path, format_: str, certificate: Path | None, out: Path, execution: Execution | None
 ) -> Answer:
     from nrs_design.api.exported import Exported
+    from nrs_design.certificates.ownership import check_certificate
     from nrs_design.exporters.export import export_design, export_proof
     from nrs_design.exporters.write import check_places, places, write_export
-    from nrs_design.ownership import check_certificate
     from nrs_design.pipeline.design import placed
 
     loaded, chosen = take_spec(spec), format_of(format_)

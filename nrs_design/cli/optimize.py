@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer, print_granted
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import detail, note, progress, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower, lower_float
 
 if TYPE_CHECKING:

@@ -97,7 +97,3 @@ Date = Annotated[
         help="Write this date on the page; without it there is no date.",
     ),
 ]
-
-ReportTo = Annotated[
-    Path | None, typer.Option("--report", metavar="FILE", help="Write a page with figures (.html).")
-]

@@ -117,8 +117,8 @@ def _answer(
 
 def _place(loaded: LoadedSpec, out: Path | None) -> Path:
     """Return where the page goes; refuse, before minutes of work, where something else stands."""
+    from nrs_design.certificates.ownership import check_owner, check_page
     from nrs_design.output import PAGE, check_html, check_place
-    from nrs_design.ownership import check_owner, check_page
 
     place = out or REPORTS / f"{loaded.spec.name}.html"
     check_html(place)
@@ -145,8 +145,8 @@ def _report_robot(loaded: LoadedSpec, place: Path, date: Day | None) -> Answer:
 
 
 def _write(report: Report, place: Path, spec: Path) -> None:
+    from nrs_design.certificates.ownership import origin_of
     from nrs_design.output import PAGE, write_output
-    from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html
 
     write_output(place, render_html(report, origin_of(spec, place)), replaces=PAGE)

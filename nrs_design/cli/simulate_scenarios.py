@@ -8,11 +8,11 @@ from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
 from nrs_design.cli.printing import note, say, wants_details
 from nrs_design.cli.tables import print_table
+from nrs_design.models.axis import unit
 from nrs_design.output import PNG, RESPONSE, SVG, Beginning, Output, check_place, write_outputs
 from nrs_design.progress import Progress
 
@@ -125,7 +125,7 @@ def _write_runs(
 
 def _print_briefly(runs: Simulation) -> None:
     """Print a row for each run, and the faults of each run."""
-    from nrs_design.axis import current
+    from nrs_design.models.axis import current
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up
 

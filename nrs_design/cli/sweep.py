@@ -146,7 +146,7 @@ def _check_options(job: Job) -> None:
 def _points(job: Job, jobs: int) -> list[PointAnswer]:
     """Return the answers of all points, in the order of the grid."""
     from nrs_design.cli.sweep_point import answer_point
-    from nrs_design.processes import map_in_processes
+    from nrs_design.pipeline.processes import map_in_processes
 
     points = job.grid.points
     found: dict[int, PointAnswer] = {}

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command, take_spec
 from nrs_design.cli.goals import design_answer
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.tables import print_blocks
+from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:

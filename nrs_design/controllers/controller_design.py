@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.laws import LAWS, AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
+from nrs_design.models.axis import AxisType
 from nrs_design.models.drive import Takes, taken_in
 
 # Remedy for modes that share no state.

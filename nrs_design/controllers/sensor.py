@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import comb
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.float32 import exact_decimal, to_float32
 from nrs_design.controllers.taylor import exponential_between
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import AxisType
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
 from nrs_design.proof.bounds import rounded_up

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
@@ -15,6 +14,7 @@ from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import AxisType
 from nrs_design.spec import InteractionDesignSpec
 
 

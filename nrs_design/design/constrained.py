@@ -9,7 +9,6 @@ from math import isclose
 
 import numpy as np
 
-from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import NOT_COMPUTED, Requirement
 from nrs_design.design.impedance_optimum import (
@@ -20,6 +19,7 @@ from nrs_design.design.impedance_optimum import (
 )
 from nrs_design.design.measures import CREEP_MEASURES, Measure
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 
 _ON_A_BOUND = 1e-3  # Largest relative distance of a gain from its active bound
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from itertools import combinations
 from math import floor, log10
 
-from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ControllerDesign, ImpedanceOptimum
 from nrs_design.design.goals import Achieved, Requirement
 from nrs_design.design.measures import (
@@ -18,6 +17,7 @@ from nrs_design.design.measures import (
     SENSITIVITY_PEAK,
     Measure,
 )
+from nrs_design.models.axis import unit
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt, ImpedanceControllerSpec, InteractionDesignSpec
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.axis import unit
 from nrs_design.design.root_locus import dominant_pair, largest
 from nrs_design.design.transfer import (
     FloatArray,
@@ -24,6 +23,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.spec.controllers import Offset
 
 

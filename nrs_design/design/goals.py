@@ -21,7 +21,6 @@ from math import isclose, pi, tan
 
 import numpy as np
 
-from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design import measures
 from nrs_design.design.force_loop import Approach, steady_force_error
@@ -37,6 +36,7 @@ from nrs_design.design.transfer import (
 )
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import AbstractAxis, Place
+from nrs_design.models.axis import unit
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 

@@ -15,7 +15,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.pattern_search import TOLERANCE, Objective, lowest_on_square
 from nrs_design.design.transfer import (
@@ -27,6 +26,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.models.contact import AbstractLinearLaw
 
 

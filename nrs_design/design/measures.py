@@ -9,7 +9,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from enum import StrEnum
 from fractions import Fraction
 
-from nrs_design.axis import current, unit
+from nrs_design.models.axis import current, unit
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import declared_in
 

@@ -1,4 +1,4 @@
-"""Designs for other programs; `formats` has one module for each format of a design."""
+"""Designs for other programs; `formats` has a module for each format, and so have wings."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from nrs_design.errors import NrsDesignError
+from nrs_design.wings import FORMATS, is_installed, load_wing
 
 DESIGN = "a proof of the design"
 SAMPLED = "a proof of the sampled loop, or --unproved"
@@ -35,8 +36,9 @@ class Format:
 
 @cache
 def format_names() -> tuple[str, ...]:
-    """Return the names of the formats of a design; none is loaded."""
-    return tuple(module.name for module in iter_modules([str(Path(__file__).parent / "formats")]))
+    """Return the names of the formats of a design, with those of wings; none is loaded."""
+    own = (module.name for module in iter_modules([str(Path(__file__).parent / "formats")]))
+    return tuple(sorted([*own, *(name for name, wing in FORMATS.items() if is_installed(wing))]))
 
 
 def format_of(name: str) -> Format:
@@ -47,7 +49,7 @@ def format_of(name: str) -> Format:
 
 def known_format(name: str) -> Format:
     """Return a format by its name; an unknown name is a `NrsDesignError`."""
-    if name not in format_names():
+    if name not in {*format_names(), *FORMATS}:
         from nrs_design.spec.faults import did_you_mean
 
         raise NrsDesignError(
@@ -70,4 +72,6 @@ def remarks_on(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
 
 
 def _module(name: str) -> Any:
+    if name in FORMATS:
+        return load_wing(FORMATS[name], "export")
     return import_module(f"{__name__}.formats.{name}")

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from nrs_design.axis import unit
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below
 from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower, upper
 
 ROUNDING = Fraction(17, 2**27)

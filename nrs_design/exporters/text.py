@@ -12,11 +12,11 @@ from html import escape
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
-from nrs_design.axis import unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
 from nrs_design.controllers.step_logic import SignalBound
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:

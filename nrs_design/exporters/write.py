@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.ownership import check_name, write_certificate
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format, format_of, remarks_on, rendered
 from nrs_design.output import check_place, write_outputs
-from nrs_design.ownership import check_name, write_certificate
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Export

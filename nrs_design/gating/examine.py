@@ -9,7 +9,6 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import unit
 from nrs_design.certificates.bounds import bound_on, bounds_summary
 from nrs_design.certificates.certificate import (
     Certificate,
@@ -24,6 +23,7 @@ from nrs_design.design.measures import GoalStanding
 from nrs_design.errors import DesignError
 from nrs_design.gating import rules
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
+from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text

@@ -16,19 +16,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.axis import about
 from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.ownership import REMEDY, check_owner, origin_of
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed, is_utf8
+from nrs_design.models.axis import about
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
-from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
+from nrs_design.pipeline.processes import map_in_processes
 from nrs_design.pipeline.runs import Recorded, run_certification, run_kept
 from nrs_design.pipeline.scenarios import run_judgement
-from nrs_design.processes import map_in_processes
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.task_space import file_of

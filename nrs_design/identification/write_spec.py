@@ -9,14 +9,16 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from nrs_design.axis import AxisType
-from nrs_design.errors import DataError, SpecError
+from nrs_design.errors import SpecError
 from nrs_design.identification.actuator.identify import ActuatorIdentification
 from nrs_design.identification.delay.identify import DelayIdentification
+from nrs_design.identification.errors import DataError
+from nrs_design.identification.spec_document import Merged, SpecDocument
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.identify import TissueIdentification
 from nrs_design.identification.tissue.pool import Tangent
+from nrs_design.models.axis import AxisType
 from nrs_design.models.contact import (
     LAWS,
     LINEAR_LAWS,
@@ -32,7 +34,6 @@ from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sampling import LONGEST_DELAY
-from nrs_design.spec.spec_document import Merged, SpecDocument
 
 _DIGITS = 6
 # Fewer records do not show how specimens vary. A range that is narrower than the declared one by

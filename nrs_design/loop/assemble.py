@@ -8,7 +8,6 @@ from fractions import Fraction
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.loop.assumptions import (
     GIVEN_MATRICES,
@@ -32,6 +31,7 @@ from nrs_design.loop.located import (
     spot_of,
     with_constants,
 )
+from nrs_design.models.axis import AxisType
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
 from nrs_design.proof.matrix import RationalMatrix

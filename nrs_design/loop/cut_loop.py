@@ -22,7 +22,6 @@ from functools import lru_cache
 from itertools import product
 from typing import NamedTuple, TypeAlias
 
-from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import (
     Admittance,
@@ -42,6 +41,7 @@ from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import NOTHING, Contact, SampledLoop
 from nrs_design.loop.sampled import Rows as Flow
 from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.axis import unit
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
 from nrs_design.models.interval import Interval

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
@@ -14,6 +13,7 @@ from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.program import SampledProgram
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.shared_state import REFERENCE, SharedState
+from nrs_design.models.axis import AxisType
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Takes
 from nrs_design.models.interval import moving

@@ -107,14 +107,6 @@ def _acceleration(
     return combine(*zip(motion.output(len(state))[: motion.order], rates, strict=True))
 
 
-def to_force_coordinates(
-    rows: Rows, motion: Realization | JointMotionLoop, contact: AbstractLinearLaw
-) -> Rows:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp``."""
-    last = coordinates(len(rows))[-1:]
-    return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
-
-
 def with_last(rows: Rows, form: LinearForm) -> Rows:
     """Return a mode with a form of the state in the place of the last one (``T A T^-1``)."""
     T, inverse = coordinates(len(rows)), coordinates(len(rows))

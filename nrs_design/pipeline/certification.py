@@ -15,8 +15,8 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method
+from nrs_design.search.work import GIGABYTE
 from nrs_design.spec import LoadedSpec
-from nrs_design.work import GIGABYTE
 
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification

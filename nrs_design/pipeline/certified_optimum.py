@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.axis import unit
 from nrs_design.controllers.gains import STEERING
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.pipeline.certification import (
     Result,
     assemble_spec,

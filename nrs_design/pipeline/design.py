@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import about
 from nrs_design.errors import DesignError, NrsDesignError
+from nrs_design.models.axis import about
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.sampling import LONGEST_DELAY
 

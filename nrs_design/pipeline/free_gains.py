@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import unit
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.gain_coordinate import (

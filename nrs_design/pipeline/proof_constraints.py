@@ -13,7 +13,7 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.certification import search_limits
 from nrs_design.pipeline.free_gains import Array, FreeGains
 from nrs_design.progress import Progress
-from nrs_design.work import Allowance, Fuse, NotAffordableError
+from nrs_design.search.work import Allowance, Fuse, NotAffordableError
 
 if TYPE_CHECKING:
     from nrs_design.design.trust_region import Evaluation

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.axis import axis_with
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
+from nrs_design.models.axis import axis_with
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed, run_analysis
 from nrs_design.progress import Progress, silent

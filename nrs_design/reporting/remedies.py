@@ -8,8 +8,8 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import unit as shown_unit
 from nrs_design.certificates.certificate import Verdict, refutes_in_contact
+from nrs_design.models.axis import unit as shown_unit
 from nrs_design.pipeline.blocked import blocked_lines
 from nrs_design.pipeline.certification import Result, find_relief
 from nrs_design.pipeline.margins import ProofMargins

@@ -32,7 +32,7 @@ _SIGNS = {State.GOOD: "✓", State.DOUBTFUL: "▲", State.BAD: "✗", State.UNKN
 def render_html(report: Report, origin: str | None = None) -> str:
     """Return the page; the same report gives the same bytes.
 
-    The origin is where its spec is, seen from the file; see `nrs_design.ownership`.
+    The origin is where its spec is, seen from the file; see `nrs_design.certificates.ownership`.
     """
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import about
 from nrs_design.certificates.certificate import canonical, to_document
+from nrs_design.models.axis import about
 from nrs_design.reporting.document import Report
 from nrs_design.reporting.evidence import evidence_sections
 from nrs_design.reporting.remedies import remedies_section

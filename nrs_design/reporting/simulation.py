@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from decimal import ROUND_CEILING, Context
 from typing import Any
 
-from nrs_design.axis import current, unit
+from nrs_design.models.axis import current, unit
 
 # Smaller numbers are shown as zero.
 _NOTHING = 1e-9

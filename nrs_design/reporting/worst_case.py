@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.axis import current, labelled
-from nrs_design.axis import unit as shown
 from nrs_design.errors import DesignError
+from nrs_design.models.axis import current, labelled
+from nrs_design.models.axis import unit as shown
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.scenarios import WorstCase, run_worst_case
 from nrs_design.proof.bounds import lower, upper

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
-from nrs_design.gating.rules import ROS_AXIS, ROS_OTHERS, ROS_PARAMETERS, Rule
+from nrs_design.gating.rules import RULES, Rule
 from nrs_design.progress import Progress
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.evidence.fields import rate_text
@@ -31,6 +31,8 @@ from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.document import Position
+
+PARAMETERS, AXIS, OTHERS = (RULES[f"NRS20{i}"] for i in (1, 2, 3))
 
 # The verdict on a file is the worst of its axes; the worst comes first.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
@@ -63,7 +65,7 @@ class _Asker:
                 self.progress(name)
                 self.known[key] = self._certify(law, axis, around, met)
             found = self.known[key]
-        return _owed(ROS_AXIS, self.path, name, *found, axis.position)
+        return _owed(AXIS, self.path, name, *found, axis.position)
 
     def _certify(
         self, law: AdmittanceLaw, axis: Axis, around: ControllerContext, met: Range
@@ -114,12 +116,12 @@ def check_file(
         around = replace(asked, period=1 / rate)
         notes |= dict.fromkeys((*assumptions(around), _rate_note(law, manager, rate)))
         read = "the parameters that the law depends on are read as written"
-        obligations.append(_owed(ROS_PARAMETERS, path, node.name, Status.MET, read, node.position))
+        obligations.append(_owed(PARAMETERS, path, node.name, Status.MET, read, node.position))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
     for other in (other for other in beside if not other.silent):
         why = f"passed over, so undecided: {other.reason}"
-        owed = _owed(ROS_OTHERS, path, other.name, Status.INCONCLUSIVE, why, other.position)
+        owed = _owed(OTHERS, path, other.name, Status.INCONCLUSIVE, why, other.position)
         obligations.append(owed)
     outcome = SpecOutcome(
         path, tuple(obligations), verdict=_verdict(obligations), cautions=tuple(cautions)
@@ -238,9 +240,7 @@ def _rate_note(law: AdmittanceLaw, manager: RosNode | None, rate: Fraction) -> s
 
 def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
     message = f"{fault.message} ({fault.remedy})" if fault.remedy else fault.message
-    return Obligation(
-        ROS_PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column
-    )
+    return Obligation(PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column)
 
 
 def _range(met: Range, unit: str) -> str:

@@ -15,7 +15,7 @@ from nrs_design.proof.exact import IntegerMatrix, TooLargeError, bit_length
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 
 # Work of a check per candidate, per form, per form for which stays are enclosed anew, per product
 # of entries, and per product and square of bits.

@@ -23,7 +23,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import round_coordinates, scale_states
 from nrs_design.search.family import Family, distinct_modes, to_floats
 from nrs_design.search.graph import jumps_of, spectral_radii, stay_bounds
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

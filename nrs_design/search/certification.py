@@ -8,7 +8,7 @@ from fractions import Fraction
 from nrs_design.certificates.certificate import AbstractChecked, CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.work import GIGABYTE
+from nrs_design.search.work import GIGABYTE
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class Limits:
 
     # Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     max_degree: int | None = None
-    # Work, in units (`nrs_design.work`). Steps that are predicted not to fit are not begun.
+    # Work, in units (`nrs_design.search.work`). Steps that are predicted not to fit are not begun.
     budget: float = 60.0
     memory: float = 2 * GIGABYTE  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some

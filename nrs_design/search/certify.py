@@ -19,7 +19,7 @@ from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.statements import asides
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
-from nrs_design.work import Allowance, Fuse
+from nrs_design.search.work import Allowance, Fuse
 
 # Share of the rest of the budget, for a faster decay than that of the first proof.
 CLIMBING_ON = 0.5

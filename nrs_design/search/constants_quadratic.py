@@ -16,7 +16,7 @@ from nrs_design.search.balance import mean_norm, round_coordinates, time_unit
 from nrs_design.search.family import Family
 from nrs_design.search.rates import Rates, digits, propose, round_form, round_matrix
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -28,7 +28,7 @@ from nrs_design.search.family import Family, limit_rate
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import KEPT, graph_of, search_together
 from nrs_design.search.rates import Rates, digits, propose, rate_at
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 # Decay rates of the form of a controller in force, as shares of the slowest decay of its modes.
 SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)

@@ -15,7 +15,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, mean_norm, scale_states, separating
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 # Modes that differ by less, relative to their largest entries, are nearly the same.
 NEARLY = 1e-12

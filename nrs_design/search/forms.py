@@ -38,7 +38,7 @@ from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
 from nrs_design.search.sdp import STEPS, SemidefiniteProgram, pack, packed_columns, unpack
 from nrs_design.search.stays import enough_pieces
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

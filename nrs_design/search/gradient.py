@@ -21,7 +21,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import draw_balanced
 from nrs_design.search.rates import at_own_rate, digits
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 # Work per round and per multiplication in it.
 PER_ROUND = 4e-5

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.structure import reachable
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

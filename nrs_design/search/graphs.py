@@ -41,7 +41,7 @@ from nrs_design.search.polynomial import (
 )
 from nrs_design.search.rates import POLYNOMIAL, Rates, at_own_rate, digits, propose, round_rate
 from nrs_design.search.stays import round_stays
-from nrs_design.work import Cost
+from nrs_design.search.work import Cost
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]

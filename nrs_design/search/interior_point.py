@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 

@@ -32,7 +32,7 @@ from nrs_design.search.one_form import (
     of_roundings,
     plain_steps,
 )
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from nrs_design.search.acceptance import Candidates, Search
 from nrs_design.search.certification import Limits
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 # Work of a degree of what is tried before the cheaper rungs.
 QUICK = 0.5

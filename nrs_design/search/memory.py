@@ -35,7 +35,7 @@ from nrs_design.search.graphs import (
 from nrs_design.search.period import NOTHING_GROWS, powers
 from nrs_design.search.polynomial import PER_CHECK, form_sizes, graph_cost
 from nrs_design.search.rates import POLYNOMIAL, propose
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 # The check follows sets of nodes, one for each sequence up to the length of the memory.
 MOST_WORDS = MAX_SETS // 2

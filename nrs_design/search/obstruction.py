@@ -19,7 +19,7 @@ from nrs_design.search.balance import time_unit
 from nrs_design.search.family import Family
 from nrs_design.search.rates import digits
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 

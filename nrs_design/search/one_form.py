@@ -24,7 +24,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.drawing import Error, FloatStep, Inequality, distinct
 from nrs_design.search.rates import numerators, unscale
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from nrs_design.search.branches import MOST_EDGES, StepGraph, best_words, turns_
 from nrs_design.search.family import Family
 from nrs_design.search.graph import Cycle, Graph, growing_cycles
 from nrs_design.search.rates import digits
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Signal = tuple[Cycle, Array]

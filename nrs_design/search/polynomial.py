@@ -18,7 +18,7 @@ from nrs_design.proof.switching import Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.drawing import SAMPLES
 from nrs_design.search.sdp import pack, program_cost, unpack
-from nrs_design.work import Cost
+from nrs_design.search.work import Cost
 
 HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 # Work of checking that a form is positive in exact arithmetic, per entry of its matrix.

@@ -25,7 +25,7 @@ from nrs_design.search.forms import DualSolution, FormsProgram
 from nrs_design.search.graphs import draw_together
 from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_share
 from nrs_design.search.ladder import Facts
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 # Bracket of a rate, relative to its size; step of a difference, relative to the rate.
 RESOLUTION, DIFFERENCE = 5e-4, 1e-5

@@ -20,7 +20,7 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
 from nrs_design.search.acceptance import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.family import Family
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 
 S = TypeVar("S")
 E = TypeVar("E", bound=AbstractEvidence, covariant=True)

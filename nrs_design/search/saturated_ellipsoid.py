@@ -42,7 +42,7 @@ from nrs_design.search.one_form import (
 )
 from nrs_design.search.rates import position_of, rate_at, round_rate
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
 

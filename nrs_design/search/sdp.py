@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.search.interior_point import ConeGroup
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 

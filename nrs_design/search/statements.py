@@ -10,7 +10,7 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import Candidates
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 
 # Share of the work on a bound for ellipsoids off the origin.
 OFF_THE_ORIGIN = 0.7

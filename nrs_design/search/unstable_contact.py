@@ -24,7 +24,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import scale_states
 from nrs_design.search.family import Family, distinct_modes
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 

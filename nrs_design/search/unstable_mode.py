@@ -15,7 +15,7 @@ from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.balance import scale_states
 from nrs_design.search.family import Family, to_floats
-from nrs_design.work import Cost
+from nrs_design.search.work import Cost
 
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7

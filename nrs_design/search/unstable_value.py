@@ -19,7 +19,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.period import search_period
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Shares = tuple[Fraction, ...]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.axis import AxisType
+from nrs_design.models.axis import AxisType
 
 Array = NDArray[np.float64]
 

@@ -24,7 +24,7 @@ from nrs_design.spec.motion import FollowingSpec, TorqueInterfaceSpec
 from nrs_design.spec.quantity import Quantity
 
 if TYPE_CHECKING:
-    from nrs_design.axis import AxisType
+    from nrs_design.models.axis import AxisType
     from nrs_design.models.contact.law import AbstractNonlinearLaw
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.sampling import SamplingSpec

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from nrs_design.axis import current
+from nrs_design.models.axis import current
 from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import ControllerSpec, contact_names
 from nrs_design.spec.environment import AbstractEnvironmentSpec, unit_at_pivot
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.load import LoadedSpec, parse_spec
 from nrs_design.spec.misses import DeadlinesSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import LimitsSpec
@@ -71,18 +70,6 @@ def describe(spec: Spec) -> tuple[Line, ...]:
     if isinstance(spec, RobotSpec):
         return tuple(describe_model(spec))
     return tuple(_interaction(spec))
-
-
-def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return what a new text of a spec changes, and what it has no longer, a line each."""
-    old, new = (
-        {row.name: row.written for row in describe(spec)}
-        for spec in (loaded.spec, parse_spec(text))
-    )
-    was = {name: old.get(name, "not there") for name in new}
-    changed = (f"{n}: {was[n]} -> {w}" for n, w in new.items() if w != was[n])
-    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
-    return tuple(changed), tuple(lost)
 
 
 def _modes(spec: SwitchedSystemSpec) -> Iterator[Line]:

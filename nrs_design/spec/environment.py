@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import Discriminator
 
-from nrs_design.axis import AxisType, current
 from nrs_design.models import contact
+from nrs_design.models.axis import AxisType, current
 from nrs_design.models.contact.law import DAMPING
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from nrs_design.axis import AxisType
+from nrs_design.models.axis import AxisType
 from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in, touched_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec

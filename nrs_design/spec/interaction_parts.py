@@ -10,7 +10,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from nrs_design.axis import AxisType
+from nrs_design.models.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
 from nrs_design.spec import motion
 from nrs_design.spec.certification import SearchExtent

@@ -6,7 +6,7 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from nrs_design.axis import COMMAND_UNITS, AxisType
+from nrs_design.models.axis import COMMAND_UNITS, AxisType
 from nrs_design.spec.quantity import QuantityKind, written_as
 
 _TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import ValidationError
 
-from nrs_design.axis import about
 from nrs_design.errors import Fault, SpecError
+from nrs_design.models.axis import about
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Mapping,

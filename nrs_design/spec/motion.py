@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from nrs_design.axis import COMMAND_UNITS
+from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
 from nrs_design.spec import quantity_fields as field
 from nrs_design.spec.check import Row, S, exactly_one, refuse

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.errors import SpecError
+from nrs_design.models.axis import COMMAND_UNITS, AxisType
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, has_unknown, parse_unit

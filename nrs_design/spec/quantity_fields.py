@@ -7,8 +7,8 @@ from fractions import Fraction
 from functools import partial
 from typing import Annotated, Any, Literal, NamedTuple
 
-from nrs_design.axis import current
 from nrs_design.errors import SpecError
+from nrs_design.models.axis import current
 from nrs_design.models.interval import Interval
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds

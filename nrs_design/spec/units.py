@@ -15,8 +15,8 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.axis import COMMAND_UNITS
 from nrs_design.errors import SpecError
+from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
 from nrs_design.spec.algebra import Operators, read_algebra
 

@@ -11,7 +11,6 @@ import numpy as np
 from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.loop.modes import Rows
-from nrs_design.models.actuator import armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.models.motion_loop import close_motion_loop
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
@@ -23,6 +22,7 @@ from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norms
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found
+from nrs_design.thesis.motor import MOTOR, armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.thesis.switching import family, impedance_rows, printed_rows
 
 # A pose in rad and m, and rates of it in 1/s and m/s; any would do.
@@ -74,7 +74,7 @@ def _centripetal() -> bool:
 
 
 def _armature() -> bool:
-    motor = thesis.MOTOR
+    motor = MOTOR
     K_T, K_B = motor.torque_constant, motor.back_emf_constant
     R = armature_resistance(thesis.ACTUATOR, motor)
     friction = K_T / voltage_gain(thesis.ACTUATOR, motor) - K_T * K_B
@@ -98,9 +98,7 @@ def _reflected_inertia() -> bool:
 
 
 def _speed_command() -> bool:
-    gradient = speed_torque_gradient(
-        armature_resistance(thesis.ACTUATOR, thesis.MOTOR), thesis.MOTOR
-    )
+    gradient = speed_torque_gradient(armature_resistance(thesis.ACTUATOR, MOTOR), MOTOR)
     # rad/s per rpm is in the gain of the actuator: the gradient alone makes the difference.
     right, printed = _damping(Fraction(1)), _damping(Fraction(gradient))
     return abs(right - thesis.DAMPING_RATIO) < 1e-3 and printed > 2 * thesis.DAMPING_RATIO

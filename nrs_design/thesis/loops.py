@@ -19,23 +19,23 @@ from nrs_design.design.impedance_optimum import ImpedanceLoop, ImpedanceProblem,
 from nrs_design.design.passivity import passive_band
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
-from nrs_design.models.actuator import armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.models.contact import Elastic
 from nrs_design.spec.controllers import Offset
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Recomputed
+from nrs_design.thesis.motor import MOTOR, armature_resistance, speed_torque_gradient, voltage_gain
 
 
 def actuator() -> Iterable[Found]:
     """Recompute the actuator's constants from the frequency response and table 4.1."""
-    resistance = armature_resistance(thesis.ACTUATOR, thesis.MOTOR)
+    resistance = armature_resistance(thesis.ACTUATOR, MOTOR)
     return (
         1 / thesis.BREAK_FREQUENCY,
         10 ** (thesis.GAIN_IN_DECIBEL / 20),
         thesis.MOTOR_INERTIA + thesis.GEARHEAD_INERTIA,
-        voltage_gain(thesis.ACTUATOR, thesis.MOTOR),
+        voltage_gain(thesis.ACTUATOR, MOTOR),
         resistance,
-        speed_torque_gradient(resistance, thesis.MOTOR),
+        speed_torque_gradient(resistance, MOTOR),
     )
 
 

@@ -32,8 +32,8 @@ from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_gri
 from nrs_design.spec import RobotSpec
 from nrs_design.spec.kinds import LENGTH
 from nrs_design.spec.quantity import parse_quantity
-from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import Found, Recomputed, printed_rows_of
+from nrs_design.thesis.motor import MOTOR
 
 POSE = (0.1, -0.2, 0.2)
 _ROUNDING = 1e-12
@@ -108,7 +108,7 @@ def robot_dynamics() -> Iterator[Found]:
     scale = np.abs(right).max(axis=(-1, -2), keepdims=True)
     worst = float((np.abs(printed - right) / scale).max())
     yield Recomputed(None, 1e-4 < worst < 1e-2, (f"{100 * worst:.2g}",))
-    reflected = 1 / (905**2 * thesis.MOTOR.inertia)
+    reflected = 1 / (905**2 * MOTOR.inertia)
     full = float(mass_matrix(ours, ours.home)[0, 0])
     facts = (f"{full:.4f}", f"{100 * full * reflected:.1f}")
     yield Recomputed(100 * 0.055 * reflected, facts=facts)

@@ -8,10 +8,11 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.loop.modes import Rows, position_mode, to_force_coordinates, velocity_mode
+from nrs_design.loop.modes import Rows, position_mode, velocity_mode, with_last
 from nrs_design.models.contact import Elastic
-from nrs_design.models.linear_form import LinearForm
-from nrs_design.models.motion_loop import realize
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.motion_loop import Realization, realize
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -41,6 +42,12 @@ def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> R
     environment = Elastic(stiffness)
     rows = velocity_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
     return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)
+
+
+def to_force_coordinates(rows: Rows, motion: Realization, contact: AbstractLinearLaw) -> Rows:
+    """Replace the last state delta by the force ``F = k delta + b Cp xp``."""
+    last = coordinates(len(rows))[-1:]
+    return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
 
 
 def hybrid_rows() -> tuple[Rows, Rows]:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.loop.cut_loop import ContinuousAxis, Place
-from nrs_design.models.actuator import THESIS_MOTOR, Actuator
+from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop, realize
 
@@ -17,7 +17,6 @@ MOTOR_INERTIA, GEARHEAD_INERTIA = 14.5e-7, 0.31e-7
 BREAK_FREQUENCY = 28.4767
 GAIN_IN_DECIBEL = -66.3
 ACTUATOR = Actuator(gain=Fraction("4.8417e-4"), time_constant=Fraction("0.0351"))
-MOTOR = THESIS_MOTOR
 
 # Thesis 4.14, 4.29 and 4.30.
 DAMPING_RATIO = 0.707

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import DataError
+from nrs_design.identification.errors import DataError
 from tests.support import ROOT, SOFT_TISSUE, document_of
 
 DATA = ROOT / "specs/data"

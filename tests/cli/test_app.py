@@ -63,7 +63,7 @@ def test_help_loads_no_part_of_a_design(tmp_path, arguments):
 # the second opinion on exponentials.
 CHECKING = (
     *("cli", "controllers", "certificates", "proof", "models"),
-    *("errors", "axis", "files", "printable", "wings"),
+    *("errors", "files", "printable", "wings"),
 )
 MOST_MODULES = 42
 

@@ -69,7 +69,7 @@ def test_json(tmp_path):
 
 def test_a_clock_that_stops_the_search_is_said_and_nothing_is_decided(tmp_path, monkeypatch):
     ticks = count()
-    monkeypatch.setattr("nrs_design.work.monotonic", lambda: 100.0 * next(ticks))
+    monkeypatch.setattr("nrs_design.search.work.monotonic", lambda: 100.0 * next(ticks))
     said = "the clock stopped this after 660 s, before its budget of work was used up"
     for options in ((), ("--json",)):
         result = run("certify-switching", COMMUTING, *options, cwd=tmp_path, code=3)

@@ -73,7 +73,7 @@ def test_a_defect_of_one_examination_is_the_worst_and_stops_no_other(examine, mo
 def test_what_the_clock_stops_is_inconclusive_and_stops_no_other(examine, monkeypatch):
     # Each search has a fuse of its own, and may look at it many times.
     ticks = iter([*[0.0] * 3, *[1e6] * 10**6])
-    monkeypatch.setattr("nrs_design.work.monotonic", lambda: next(ticks))
+    monkeypatch.setattr("nrs_design.search.work.monotonic", lambda: next(ticks))
     outcome = examine(STABLE.replace("name: stable", "name: other"), STABLE)
     assert [spec.verdict for spec in outcome.specs] == [None, "proved"]
     (broken,) = outcome.broken

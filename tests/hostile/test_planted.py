@@ -35,7 +35,7 @@ def test_one_module_starts_processes():
         or (isinstance(node, ast.ImportFrom) and starters & {str(node.module).split(".")[0]})
         or (isinstance(node, ast.Attribute) and node.attr in starters)
     }
-    assert found == {"nrs_design.processes"}
+    assert found == {"nrs_design.pipeline.processes"}
 
 
 @pytest.mark.parametrize(

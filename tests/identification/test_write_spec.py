@@ -6,15 +6,16 @@ from functools import cache
 
 import pytest
 
-from nrs_design.errors import DataError, SpecError
+from nrs_design.errors import SpecError
 from nrs_design.identification import write_spec
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.errors import DataError
+from nrs_design.identification.spec_document import spec_changes
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.write_spec import law_to_write
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.describe import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import quick, record, sinusoids, slow

@@ -9,13 +9,14 @@ from ruamel.yaml import YAML
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.loop.assemble import GIVEN_MATRICES, assemble_from_text
-from nrs_design.loop.modes import to_force_coordinates, velocity_mode
+from nrs_design.loop.modes import velocity_mode
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
+from nrs_design.thesis.switching import to_force_coordinates
 from tests.loop.support import MOTION
 from tests.support import holds
 

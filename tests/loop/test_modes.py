@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from nrs_design.controllers.laws import Admittance, IntegralForce, ProportionalForce
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.modes import position_mode, to_force_coordinates, velocity_mode, with_idle
+from nrs_design.loop.modes import position_mode, velocity_mode, with_idle
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.thesis.switching import to_force_coordinates
 from tests.loop.support import LOOP, MOTION, objects, polynomial, positive, stable
 from tests.tables import by_rows
 

@@ -13,9 +13,9 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.saturated_ellipsoid import search_saturated
+from nrs_design.search.work import Allowance
 from nrs_design.simulation.norms import clipped, quadratic_norm
 from nrs_design.simulation.saturation import saturated_rates
-from nrs_design.work import Allowance
 from tests.loop.support import loaded
 from tests.proof.systems import pushed_away_in_steps
 from tests.support import ROOT, words_of

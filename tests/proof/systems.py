@@ -26,7 +26,7 @@ from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.graphs import shape_of
 from tests.support import Entry, Rows, dayawansa_martin, family, matrix
 from tests.tables import table

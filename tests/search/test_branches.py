@@ -10,7 +10,7 @@ from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.branches import StepGraph, best_words
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.systems import family, golden, lossy_network, resets_between
 
 

@@ -17,7 +17,7 @@ from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.search.unstable_value import search_mixture
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.search.support import outcome
 from tests.support import dayawansa_martin, family, holds
 

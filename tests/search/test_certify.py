@@ -376,7 +376,8 @@ class TestMethods:
         for pace in (0.0, 1e-6, 1e-3):
             ticks = count()
             monkeypatch.setattr(
-                "nrs_design.work.monotonic", lambda pace=pace, ticks=ticks: pace * next(ticks)
+                "nrs_design.search.work.monotonic",
+                lambda pace=pace, ticks=ticks: pace * next(ticks),
             )
             result = certify(system, limits=limits)
             counts = [(a.step, a.outcome, a.work) for a in result.attempts]
@@ -387,7 +388,7 @@ class TestMethods:
     def test_a_search_that_the_clock_stops_decides_nothing(self, monkeypatch):
         """Not even where a proof was at hand already, at a rate that more time would raise."""
         jump = iter([*[0.0] * 30, *[1e9] * 10**6])
-        monkeypatch.setattr("nrs_design.work.monotonic", lambda: next(jump))
+        monkeypatch.setattr("nrs_design.search.work.monotonic", lambda: next(jump))
         with pytest.raises(ClockError, match="the clock stopped this after 660 s"):
             certify(STABLE)
 

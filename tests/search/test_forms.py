@@ -11,7 +11,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.search import forms, graphs
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof import systems
 from tests.search.support import found
 from tests.support import thinned

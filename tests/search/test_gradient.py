@@ -11,9 +11,9 @@ from nrs_design.search.balance import own_norms
 from nrs_design.search.certify import certify
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
+from nrs_design.search.work import Allowance, NotAffordableError
 from nrs_design.thesis import thesis
 from nrs_design.thesis.switching import impedance_rows
-from nrs_design.work import Allowance, NotAffordableError
 from tests.support import family, holds
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])

@@ -19,7 +19,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import PER_CHECK, conewise_cost, family_cost, functions_cost
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof import systems
 from tests.proof.graphs import shape_of
 from tests.search.support import found, outcome, thesis_robot

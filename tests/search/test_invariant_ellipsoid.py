@@ -15,8 +15,8 @@ from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid, search_offset_ellipsoid
+from nrs_design.search.work import Allowance, NotAffordableError
 from nrs_design.simulation.worst_case import worst_runs
-from nrs_design.work import Allowance, NotAffordableError
 from tests.loop.support import assembled
 from tests.proof.systems import (
     bouncing,

@@ -13,7 +13,7 @@ from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.ladder import LADDER, applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_mode import examine_every_mode
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.systems import (
     ando_shih,
     branicky,

@@ -15,7 +15,7 @@ from nrs_design.search.certify import Limits, certify
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.literature.test_growth_per_step import divided
 from tests.proof.systems import ando_shih, family, golden, lossy_network
 

@@ -14,7 +14,7 @@ from nrs_design.search.certify import certify
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.graph import Graph
 from nrs_design.search.period import search_period, search_rounds, stay_words
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.literature.timed_loop import timed
 from tests.proof.systems import (
     bouncing_in_steps,

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.proof.channels import Output
 from nrs_design.proof.mode import Time
 from nrs_design.search.rate_slope import RESOLUTION, force_slope, may_have_slope, rate_slope
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof import systems
 from tests.search.test_invariant_ellipsoid import bounded
 

@@ -14,7 +14,7 @@ from nrs_design.search.acceptance import NO_MARGIN
 from nrs_design.search.family import Family
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import draw_balanced
-from nrs_design.work import Allowance, Cost, NotAffordableError
+from nrs_design.search.work import Allowance, Cost, NotAffordableError
 from tests.proof.systems import dayawansa_martin
 from tests.proof.systems import family as system_of
 from tests.tables import by_rows

@@ -12,7 +12,7 @@ from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.search.acceptance import first_accepted
 from nrs_design.search.certify import certify
 from nrs_design.search.saturated_ellipsoid import search_saturated
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     family,
     matrix,

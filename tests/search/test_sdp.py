@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from nrs_design.proof import exact
 from nrs_design.search import sdp
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof.truth import determinant, is_definite
 from tests.support import ends_soon
 from tests.tables import by_rows

@@ -17,7 +17,7 @@ from nrs_design.search.certify import Limits, certify, refuted_at_once
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
 from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
-from nrs_design.work import Allowance, NotAffordableError
+from nrs_design.search.work import Allowance, NotAffordableError
 from tests.proof import systems
 from tests.search.support import thesis_robot
 from tests.search.test_losable_brute_force import rounded

@@ -15,7 +15,7 @@ from nrs_design.search.unstable_value import (
     search_switching_at_values,
     search_value,
 )
-from nrs_design.work import Allowance
+from nrs_design.search.work import Allowance
 from tests.proof import systems
 from tests.proof.truth import holds
 from tests.search.support import found, outcome

@@ -8,8 +8,8 @@ from string import Formatter
 
 import pytest
 
-from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError, SpecError
+from nrs_design.models.axis import AxisType
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.runs import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec

@@ -8,7 +8,6 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
 from nrs_design.controllers.laws import Admittance
@@ -29,6 +28,7 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.proved_margins import ranged_loops, with_proofs
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis
+from nrs_design.models.axis import unit
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec

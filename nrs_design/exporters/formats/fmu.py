@@ -25,7 +25,7 @@ from nrs_design.exporters.program import Program, program_of, start_lines
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.text import block_comment, fill_template
 from nrs_design.output import C_SOURCE, FMU
-from nrs_design.processes import run_program
+from nrs_design.pipeline.processes import run_program
 
 FORMAT = Format(
     "the law for co-simulation by FMI 2.0, with sources, and compiled where cc is",

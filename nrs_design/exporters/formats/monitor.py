@@ -10,13 +10,13 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from nrs_design.axis import unit
 from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitoredRegion, MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.text import CNames, block_comment, fill_template
+from nrs_design.models.axis import unit
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
 
 FORMAT = Format(

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.numeric import TINY, Array, bic, search
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.actuator.fit import (
     DEAD_TIME_NOTE,
     ActuatorFit,
@@ -16,6 +15,7 @@ from nrs_design.identification.actuator.fit import (
     tells_friction,
 )
 from nrs_design.identification.datasets.records import SignalRecord, doubt_step
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.spec.plausible import doubt_size

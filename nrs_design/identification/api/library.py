@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.audit import Audit, AuditCheck
 from nrs_design.api.identified import FittedRange, Identification
-from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.datasets.records import read_actuator, read_signals, read_tissue
 from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.reporting.actuator import view_actuator
 from nrs_design.identification.reporting.delay import view_delay
 from nrs_design.identification.reporting.running import run_facts

@@ -12,19 +12,20 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, ReportTo
+from nrs_design.cli.options import Date
 from nrs_design.cli.printing import detail, progress, say, wants_details
 from nrs_design.cli.tables import print_table
-from nrs_design.errors import DataError, SpecError
+from nrs_design.errors import SpecError
+from nrs_design.identification.cli.destinations import Destinations
+from nrs_design.identification.errors import DataError
 from nrs_design.models.contact import LAWS
 from nrs_design.spec.kinds import ANGLE, LENGTH, LEVER_ARM
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 if TYPE_CHECKING:
     from nrs_design.identification.reporting.view import FindingView
+    from nrs_design.identification.spec_document import Merged
     from nrs_design.spec import LoadedSpec
-    from nrs_design.spec.spec_document import Merged
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
@@ -34,6 +35,9 @@ ColumnMap = Annotated[
 WriteTo = Annotated[
     Path | None,
     typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
+]
+ReportTo = Annotated[
+    Path | None, typer.Option("--report", metavar="FILE", help="Write a page with figures (.html).")
 ]
 
 # In m; longer arms were meant in mm.

@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from nrs_design.axis import COMMAND_UNITS
 from nrs_design.identification.numeric import Array, Flags, parted, runs, usual_step
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tables.table import Data, MeasurementTable, Source, read_table
+from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.models.contact.motion import Motion
 from nrs_design.proof.text import counted
 from nrs_design.spec.plausible import doubt_size

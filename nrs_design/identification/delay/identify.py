@@ -11,7 +11,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, doubt_step
 from nrs_design.identification.delay.fit import (
     EXACT,
@@ -24,6 +23,7 @@ from nrs_design.identification.delay.fit import (
     fit_errors,
     fit_held,
 )
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.held import Lags
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.identification.statistics import (

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, longest_stretch
 from nrs_design.identification.delay.identify import identify_delay
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.rounding import noise_variance
 from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
 from nrs_design.identification.running.log import RunLog

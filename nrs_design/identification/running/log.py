@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import FEWEST_ROWS, check_advance, find_gaps
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.numeric import Array, Flags, Rows, usual_step
 from nrs_design.identification.tables.table import Data, Source, read_table
 

@@ -10,7 +10,7 @@ from math import pi
 from pathlib import Path
 from types import MappingProxyType
 
-from nrs_design.errors import DataError
+from nrs_design.identification.errors import DataError
 
 # Newtons in a kilogram-force, exactly.
 KGF = 9.80665

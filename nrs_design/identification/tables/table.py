@@ -14,8 +14,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.files import open_regular
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.tables.columns import UNITS, Column, find_columns, standard_name
 from nrs_design.proof.text import quoted

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.pool import (
     ModelFit,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.errors import DataError
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import (
     CONFIDENCE,

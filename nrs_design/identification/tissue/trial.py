@@ -9,8 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.errors import DataError
+from nrs_design.identification.named_values import read_named_values
 from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import (
@@ -21,7 +22,6 @@ from nrs_design.identification.tissue.contact import (
     surface,
 )
 from nrs_design.models.contact import Motion
-from nrs_design.named_values import read_named_values
 from nrs_design.proof.text import counted
 
 FEWEST = 50

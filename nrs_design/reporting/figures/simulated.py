@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.axis import current, labelled, unit
+from nrs_design.models.axis import current, labelled, unit
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.style import (
     BLUE,

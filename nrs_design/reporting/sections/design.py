@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
+from nrs_design.models.axis import unit
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots

@@ -8,11 +8,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.axis import unit
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.catalogue import CONTACT_KEPT, catalogue_kind
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.design.measures import SENSITIVITY_PEAK
+from nrs_design.models.axis import unit
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
-from nrs_design.axis import labelled
 from nrs_design.design.laws.law import AbstractControllerAnalysis
 from nrs_design.design.measures import (
     COST_MEANING,
@@ -18,6 +17,7 @@ from nrs_design.design.measures import (
     MEANING,
     SENSITIVITY_PEAK,
 )
+from nrs_design.models.axis import labelled
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number

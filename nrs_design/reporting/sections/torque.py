@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.axis import labelled
+from nrs_design.models.axis import labelled
 from nrs_design.reporting.document import Block, Paragraph, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked

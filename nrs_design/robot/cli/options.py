@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli.tables import print_table
-from nrs_design.errors import PoseError
+from nrs_design.robot.models.geometry import PoseError
 
 if TYPE_CHECKING:
     from nrs_design.robot.models.robot import Robot

@@ -16,9 +16,32 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nrs_design.errors import PoseError
+from nrs_design.errors import NrsDesignError
 from nrs_design.robot.models.robot import Leg, Robot
 from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, scale
+
+
+class PoseError(NrsDesignError):
+    """A pose (phi, psi, d), in rad and m, that the robot cannot take.
+
+    The leg that cannot reach it is overstretched, or folded too far, by the excess in m.
+    """
+
+    rule = "NRS007"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        leg: str | None = None,
+        excess: float | None = None,
+        pose: tuple[float, float, float] | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(message, remedy=remedy)
+        self.leg = leg
+        self.excess = excess
+        self.pose = pose
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.errors import PoseError
-from nrs_design.robot.models.geometry import LegPosture, Posture, posture
+from nrs_design.robot.models.geometry import LegPosture, PoseError, Posture, posture
 from nrs_design.robot.models.motion import joint_driven, pose_driven
 from nrs_design.robot.models.robot import Leg, Robot
 from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, stacked

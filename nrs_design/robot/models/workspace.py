@@ -8,9 +8,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.errors import DesignError, PoseError
+from nrs_design.errors import DesignError
 from nrs_design.robot.models.dynamics import mass_matrix
-from nrs_design.robot.models.geometry import is_reachable, posture, reach_margin, unreachable
+from nrs_design.robot.models.geometry import (
+    PoseError,
+    is_reachable,
+    posture,
+    reach_margin,
+    unreachable,
+)
 from nrs_design.robot.models.kinematics import (
     coupler_margin,
     inverse_jacobian,

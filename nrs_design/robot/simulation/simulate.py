@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from nrs_design.errors import DesignError, PoseError
+from nrs_design.errors import DesignError
 from nrs_design.progress import Progress, silent
 from nrs_design.robot.design.motion_control import LawState
+from nrs_design.robot.models.geometry import PoseError
 from nrs_design.robot.models.kinematics import JointMotion, direct_kinematics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.experiment import TrackingRecord

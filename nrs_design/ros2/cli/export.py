@@ -38,8 +38,8 @@ def export(
 
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
+    from nrs_design.certificates.ownership import check_certificate, write_certificate
     from nrs_design.output import check_place, write_output
-    from nrs_design.ownership import check_certificate, write_certificate
     from nrs_design.pipeline.certification import search_limits
     from nrs_design.pipeline.design import placed
     from nrs_design.pipeline.runs import run_interaction

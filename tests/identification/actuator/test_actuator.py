@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.datasets.records import read_actuator
+from nrs_design.identification.errors import DataError
 from tests.identification import motors
 from tests.identification.support import sinusoids, write_csv
 

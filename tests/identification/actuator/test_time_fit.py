@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.actuator.fit import fit_in_time, scan_motor
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets.records import SignalRecord
+from nrs_design.identification.errors import DataError
 from tests.identification import motors, synthetic
 from tests.identification.support import sinusoids, source
 

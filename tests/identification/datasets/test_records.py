@@ -5,8 +5,8 @@ import hashlib
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import read_actuator, read_tissue
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.tables import table as tables
 from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.identification.tables.table import read_table

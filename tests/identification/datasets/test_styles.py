@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import read_tissue
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.tables.columns import Name, find_columns, parse_mapping, read_name
 from tests.tables import rows
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.datasets.records import read_actuator, read_signals, read_tissue
+from nrs_design.identification.errors import DataError
 from tests.support import run
 from tests.tables import table
 

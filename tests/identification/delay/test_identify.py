@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.delay.identify import identify_delay, is_smooth
+from nrs_design.identification.errors import DataError
 from tests.identification import motors, signals
 
 SEEDS = 200

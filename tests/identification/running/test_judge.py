@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError, DesignError
+from nrs_design.errors import DesignError
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.running.bounds import BoundStatus, bounds_of_spec, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.spec import parse_spec, read_spec

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.statistics import student_quantile
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.tissue.pool import fit_model

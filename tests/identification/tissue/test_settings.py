@@ -2,8 +2,9 @@
 
 import pytest
 
-from nrs_design.errors import DataError, DesignError
+from nrs_design.errors import DesignError
 from nrs_design.identification.cli.identify import parse_arm
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.tissue.trial import Preparation, read_preparation
 from nrs_design.models.contact import Elastic
 from tests.tables import rows

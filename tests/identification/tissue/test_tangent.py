@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from nrs_design.errors import DataError
+from nrs_design.identification.errors import DataError
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.tissue.pool import check_preload
 from nrs_design.identification.write_spec import merge_tissue

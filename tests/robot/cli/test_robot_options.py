@@ -3,8 +3,8 @@
 import pytest
 import typer
 
-from nrs_design.errors import PoseError
 from nrs_design.robot.cli.options import read_pose, three_numbers
+from nrs_design.robot.models.geometry import PoseError
 from tests.tables import rows
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from nrs_design.errors import DesignError, PoseError
+from nrs_design.errors import DesignError
 from nrs_design.robot.models.body import MASSLESS, point_mass
 from nrs_design.robot.models.correction import simplified_dynamics
 from nrs_design.robot.models.dynamics import (
@@ -18,6 +18,7 @@ from nrs_design.robot.models.dynamics import (
     potential_energy,
     torque_shares,
 )
+from nrs_design.robot.models.geometry import PoseError
 from nrs_design.robot.models.kinematics import jacobian, orientation, orientation_jacobian
 from nrs_design.robot.models.robot import Workspace
 from nrs_design.robot.models.workspace import examine_inertia

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from nrs_design.errors import PoseError
-from nrs_design.robot.models.geometry import is_reachable, posture, reach, reach_margin
+from nrs_design.robot.models.geometry import PoseError, is_reachable, posture, reach, reach_margin
 from tests.tables import rows
 
 from .strategies import poses

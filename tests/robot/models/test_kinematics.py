@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from nrs_design.errors import PoseError
-from nrs_design.robot.models.geometry import direction, posture
+from nrs_design.robot.models.geometry import PoseError, direction, posture
 from nrs_design.robot.models.kinematics import (
     coupler_margin,
     direct_kinematics,

@@ -4,7 +4,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from nrs_design.errors import PoseError
+from nrs_design.robot.models.geometry import PoseError
 from nrs_design.robot.models.kinematics import inverse_kinematics, joint_motion
 from nrs_design.robot.models.workspace import (
     joint_peaks,

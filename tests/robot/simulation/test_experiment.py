@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.errors import PoseError
+from nrs_design.robot.models.geometry import PoseError
 from nrs_design.robot.simulation.experiment import COORDINATE, Experiment, thesis_experiments
 
 # Of the equations, with the 0.0571 rad/s of 4.33c and 4.37 to 4.39 taken literally.

@@ -16,9 +16,9 @@ from nrs_design.errors import NrsDesignError
 if TYPE_CHECKING:
     from datetime import datetime
 
+    from nrs_design.identification.spec_document import Merged
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
-    from nrs_design.spec.spec_document import Merged
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +97,8 @@ class Destinations:
 
 
 def _write_spec(spec: LoadedSpec, merged: Merged) -> None:
+    from nrs_design.identification.spec_document import spec_changes
     from nrs_design.output import write_output
-    from nrs_design.spec.describe import spec_changes
 
     changed, lost = spec_changes(spec, merged.text)
     write_output(spec.path, merged.text)

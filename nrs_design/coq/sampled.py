@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
-from nrs_design.exporters.proof_assistant.text import (
+from nrs_design.coq.text import (
     AbstractStatement,
     Definitions,
     Theorem,

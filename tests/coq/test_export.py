@@ -168,7 +168,7 @@ def test_a_name_is_one_of_coq():
 
 
 def test_names_of_modes_that_are_alike_stay_apart():
-    from nrs_design.exporters.proof_assistant.text import identifiers
+    from nrs_design.coq.text import identifiers
 
     names = identifiers(["a-b", "a/b", "a.b", "a_b_2"])
     assert len(set(names.values())) == 4
@@ -177,7 +177,7 @@ def test_names_of_modes_that_are_alike_stay_apart():
 
 @pytest.mark.parametrize("number", [0, -1, 2**30 - 1, 2**30, -(2**61) - 5, 3**80])
 def test_long_integers_are_those_digits(number):
-    from nrs_design.exporters.proof_assistant.text import long_integer
+    from nrs_design.coq.text import long_integer
 
     text = long_integer(number)
     if re.fullmatch("-?[0-9]+", text):

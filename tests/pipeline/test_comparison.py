@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from nrs_design.comparison import Difference, Part, Side, compare, compare_sides
 from nrs_design.errors import CertificateError, SpecError
+from nrs_design.pipeline.comparison import Difference, Part, Side, compare, compare_sides
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 CERTIFICATE = ROOT / "reports" / "commuting.cert.json"

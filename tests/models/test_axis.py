@@ -2,9 +2,9 @@
 
 import pytest
 
-from nrs_design.axis import AxisType, about, axis_with, current, labelled, unit
 from nrs_design.controllers.laws import LAWS
 from nrs_design.errors import InternalError, SpecError
+from nrs_design.models.axis import AxisType, about, axis_with, current, labelled, unit
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 from nrs_design.spec.units import parse_unit

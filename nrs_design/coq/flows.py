@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import repeat
 
-from nrs_design.exporters.proof_assistant.text import (
+from nrs_design.coq.text import (
     AbstractStatement,
     Definitions,
     Theorem,

@@ -7,19 +7,20 @@ from pathlib import Path
 
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
+from nrs_design.coq.flows import flows_theorem
+from nrs_design.coq.places import places_theorem
+from nrs_design.coq.sampled import sampled_theorem
+from nrs_design.coq.text import Theorem, in_comment
 from nrs_design.errors import DesignError
 from nrs_design.exporters import Format
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.proof_assistant.flows import flows_theorem
-from nrs_design.exporters.proof_assistant.places import places_theorem
-from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
-from nrs_design.exporters.proof_assistant.text import Theorem, in_comment
 from nrs_design.exporters.record import header_lines
-from nrs_design.output import COQ
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
+# First bytes of a file, which a new one may replace.
+COQ = b"(* nrs-design proof for Coq"
 FORMAT = Format(
     "statement and certificate for the proof assistant Coq, which checks them by itself",
     "a proof of stability; matrices have one, too",
@@ -27,7 +28,7 @@ FORMAT = Format(
     identifier=True,
     alone=True,
 )
-_LIBRARY = Path(__file__).parent.parent / "proof_assistant"
+_LIBRARY = Path(__file__).parent
 # Parts of a claim outside every theorem of the library.
 _LEFT_OUT = (
     "that these modes are those of the robot: what is taken for granted, below",

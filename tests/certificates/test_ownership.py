@@ -3,9 +3,9 @@ import json
 import pytest
 
 from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.ownership import check_certificate, check_name, check_owner, origin_of
 from nrs_design.errors import OutputError
 from nrs_design.output import PAGE
-from nrs_design.ownership import check_certificate, check_name, check_owner, origin_of
 from nrs_design.pipeline.runs import run_certification
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING

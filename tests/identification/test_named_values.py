@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.named_values import read_named_values
+from nrs_design.identification.named_values import read_named_values
 from tests.tables import rows
 
 READERS = {"length": float, "name": str}

@@ -6,7 +6,7 @@ from math import inf
 import pytest
 
 from nrs_design.errors import ClockError
-from nrs_design.work import Allowance, Cost, Fuse, NotAffordableError
+from nrs_design.search.work import Allowance, Cost, Fuse, NotAffordableError
 
 
 class Clock:

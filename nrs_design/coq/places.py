@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil
 
-from nrs_design.exporters.proof_assistant.flows import FlowStatement
-from nrs_design.exporters.proof_assistant.text import (
+from nrs_design.coq.flows import FlowStatement
+from nrs_design.coq.text import (
     Definitions,
     Theorem,
     factor_of,

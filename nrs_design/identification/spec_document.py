@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from nrs_design.errors import SpecError
+from nrs_design.spec.describe import describe
 from nrs_design.spec.document import Data, Node, to_data
 from nrs_design.spec.load import LoadedSpec, parse_spec
 from nrs_design.spec.task_space import file_of
@@ -82,6 +83,18 @@ class SpecDocument:
             )
         parse_spec(text, self._loaded.path)
         return text
+
+
+def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return what a new text of a spec changes, and what it has no longer, a line each."""
+    old, new = (
+        {row.name: row.written for row in describe(spec)}
+        for spec in (loaded.spec, parse_spec(text))
+    )
+    was = {name: old.get(name, "not there") for name in new}
+    changed = (f"{n}: {was[n]} -> {w}" for n, w in new.items() if w != was[n])
+    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
+    return tuple(changed), tuple(lost)
 
 
 def _alone(root: Node) -> str:

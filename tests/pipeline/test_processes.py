@@ -8,8 +8,8 @@ from time import sleep
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.processes import map_in_processes
-from tests.work import killed, square
+from nrs_design.pipeline.processes import map_in_processes
+from tests.pipeline.work import killed, square
 
 
 @pytest.mark.parametrize("jobs", [1, 2])

@@ -53,7 +53,7 @@ def take_candidate(
         return None, f"not tried: {error}"
     except NotAffordableError as reason:
         return None, str(reason)
-    except (LinAlgError, OverflowError) as error:
+    except (LinAlgError, ArithmeticError) as error:
         return None, f"floating point failed ({error})"
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import sqrt
+from math import log, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -336,8 +336,10 @@ class FormsProgram:
             if edge.is_flow:
                 rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
             elif edge.lasts:
-                kept = max(-least, 0.0) * edge.share
-                rates.append(kept ** (0.5 / (self.degree * edge.lasts)))
+                # Nothing may be left of a form, which no logarithm takes.
+                kept = max(-least * edge.share, np.finfo(float).tiny)
+                factor = kept ** (0.5 / (self.degree * edge.lasts))
+                rates.append(-log(factor) if self.time is Time.CONTINUOUS else factor)
         slowest = min if self.time is Time.CONTINUOUS else max
         return slowest(rates, default=stable)
 

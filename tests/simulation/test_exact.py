@@ -203,6 +203,24 @@ def test_modes_have_the_poles_of_what_runs(tissue, more, loaded):
         assert all(min(abs(z - x) for x in (0, swing, -swing)) < 1e-4 for z in left)
 
 
+def test_what_runs_without_an_offset_is_what_is_proved():
+    """The motion under force control is that of the assembled mode, and X an input of it alone."""
+    spec = parse_spec(text_of(PLACED, scenario=FREE))
+    plant = build_plant(spec)
+    design = design_controllers(spec, plant)
+    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"])
+    touching = replace(scenario, surfaces=default_scenario(spec, plant).surfaces)
+    loop = Loop(spec, plant, design, touching)
+    proved = {mode.name: mode.A for mode in assemble(spec, plant, design).modes}
+    for name, label in (("position", "position"), ("force", "force/soft")):
+        own = np.array(proved[label].floats())
+        A = loop.mode(name, (0,) if name == "force" else ()).A
+        assert np.poly(A[:2, :2]) == pytest.approx(np.poly(own), rel=1e-9)
+    place = [signal.name for signal in loop.states].index("commanded position")
+    assert A[0, place] or A[1, place]
+    assert not A[place].any()
+
+
 def test_a_pi_leaves_no_error_and_its_integral_bleeds():
     """No matter where X waits: ``F = Fd`` in the end. Out again, the integral is ``exp(-20 t)``."""
     force = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "

@@ -338,8 +338,9 @@ class FormsProgram:
             elif edge.lasts:
                 # Nothing may be left of a form, which no logarithm takes.
                 kept = max(-least * edge.share, np.finfo(float).tiny)
-                factor = kept ** (0.5 / (self.degree * edge.lasts))
-                rates.append(-log(factor) if self.time is Time.CONTINUOUS else factor)
+                power = 0.5 / (self.degree * edge.lasts)
+                continuous = self.time is Time.CONTINUOUS
+                rates.append(-power * log(kept) if continuous else kept**power)
         slowest = min if self.time is Time.CONTINUOUS else max
         return slowest(rates, default=stable)
 

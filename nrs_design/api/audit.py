@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from nrs_design.api.result import AbstractResult
+
+# Undecided: intervals lie across the bound. Not modelled: the proof assumes that the effect is
+# absent, and has no bound.
+Status = Literal["inside", "outside", "undecided", "not judged", "not modelled"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,8 +18,7 @@ class AuditCheck:
     """One bound and what the run says about it."""
 
     name: str  # What is judged
-    # ``inside``, ``outside``, ``undecided``, ``estimated``, ``not judged``, ``not modelled``
-    status: str
+    status: Status  # The outcome
     measured: str  # Measured value; without a judgement, the reason
     allowed: str = ""  # The bound
     basis: str = ""  # Where the bound comes from

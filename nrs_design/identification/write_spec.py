@@ -17,7 +17,7 @@ from nrs_design.identification.spec_document import Merged, SpecDocument
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tissue.identify import TissueIdentification
-from nrs_design.identification.tissue.pool import Tangent
+from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.models.axis import AxisType
 from nrs_design.models.contact import (
     LAWS,

@@ -24,9 +24,10 @@ from nrs_design.ros2.law import (
     Range,
     is_admittance,
     read_law,
+    read_parameter,
 )
 from nrs_design.ros2.managers import MANAGER, find_undecided, kind_of, managers_of
-from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
+from nrs_design.ros2.parameters import RosNode, read_nodes
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -194,36 +195,20 @@ def _verdict(obligations: Iterable[Obligation]) -> str | None:
 def _rate(law: AdmittanceLaw, manager: RosNode | None, path: Path) -> Fraction:
     """Return how often the law runs, in 1/s: the manager's rate, or its own if that is lower."""
     own = law.values["update_rate"][0]
-    known = manager is not None and "update_rate" in manager.values
-    found = _written_rate(manager, path) if manager and known else Fraction(0)
-    if found <= 0:
-        remedy = "add update_rate of controller_manager"
+    values, faults = read_parameter(manager, "update_rate") if manager else ((), [])
+    rate = values[0] if values else Fraction(0)
+    if not faults and not rate:
         message = "the rate of the control loop is not in this file"
-        raise _refusal(path, law.node.position, message, remedy)
-    if 0 < own < found and found % own:
-        raise _refusal(
-            path,
-            law.node.place("update_rate"),
-            f"update_rate: {own} does not divide {found}, the rate of the control loop: the "
-            "controller runs at uneven periods, or at another rate",
-            "write a rate that divides it",
+        faults = [law.node.fault("update_rate", message, "add update_rate of controller_manager")]
+    elif not faults and 0 < own < rate and rate % own:
+        message = (
+            f"{own} does not divide {rate}, the rate of the control loop: the controller runs "
+            "at uneven periods, or at another rate"
         )
-    return min(found, own) if own else found
-
-
-def _written_rate(manager: RosNode, path: Path) -> Fraction:
-    listed = texts(manager.values["update_rate"])
-    try:
-        if not listed:
-            raise SpecError("update_rate is no number", remedy="write `update_rate: 500`")
-        return read_integer(listed[0].text)
-    except SpecError as error:
-        place, remedy = manager.place("update_rate"), error.remedy or ""
-        raise _refusal(path, place, f"update_rate: {error.message}", remedy) from None
-
-
-def _refusal(path: Path, place: Position, message: str, remedy: str) -> SpecError:
-    return SpecError.of((Fault(message, place.line, place.column, remedy),), path)
+        faults = [law.node.fault("update_rate", message, "write a rate that divides it")]
+    if faults:
+        raise SpecError.of(faults, path)
+    return min(rate, own) if own else rate
 
 
 def _rate_note(law: AdmittanceLaw, manager: RosNode | None, rate: Fraction) -> str:

@@ -117,7 +117,7 @@ def is_admittance(node: RosNode, kind: str | None) -> bool:
 
 def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
     """Read the law of an admittance controller; a `SpecError` says why the node would not start."""
-    read = {name: _read(node, name, parameter) for name, parameter in LAW.items()}
+    read = {name: read_parameter(node, name) for name in LAW}
     faults = [fault for _, wrong in read.values() for fault in wrong]
     if faults := [*faults, *_too_few_joints(node)]:
         raise SpecError.of(faults, None)
@@ -157,11 +157,9 @@ def _force_from(node: RosNode, others: Collection[str]) -> str | None:
     return source if source in others else None
 
 
-def _read(
-    node: RosNode, name: str, parameter: Parameter
-) -> tuple[tuple[Fraction, ...], list[Fault]]:
-    """Return the values of a parameter, and what is wrong with it."""
-    count = parameter.count
+def read_parameter(node: RosNode, name: str) -> tuple[tuple[Fraction, ...], list[Fault]]:
+    """Return the values of a parameter of `LAW`, and its faults."""
+    parameter, count = LAW[name], LAW[name].count
     wanted = "one value" if count == 1 else f"a list of {count} values"
     if name not in node.values and name in node.places:
         return (), [node.fault(name, f"expected {wanted}, found a map", f"write {wanted}")]

@@ -99,7 +99,7 @@ def test_it_reports_first_what_audit_finds(tmp_path, monitor, rules, data):
         assert kind == "NONE"
         return
     assert kind in SAME[found.first.name]
-    begin = found.first.first.time
+    begin = found.first.time
     assert begin <= time <= begin + (2.6 if found.first.name == "dwell times" else 0.0)
 
 

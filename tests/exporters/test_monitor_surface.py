@@ -273,9 +273,9 @@ def test_audit_tells_the_same_of_a_log(monitor, tmp_path, surface, factor):
     log = read_run(file)
     columns = zip(log.columns["angle"], log.columns["torque"], strict=True)
     told = [row for row, read in enumerate(columns) if watching.read(*read) != "NONE"][:1]
-    first = judge_sector(log, bounds_of_spec(spec))[0][0].first
+    first = judge_sector(log, bounds_of_spec(spec))[0][0].time
     assert (first is None) == (told == []) == (factor == 1.0)
-    assert first is None or first.time == pytest.approx(log.time[told[0]])
+    assert first is None or first == pytest.approx(log.time[told[0]])
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,8 @@ from scipy.signal import lfilter
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.pool import fit_model
-from nrs_design.identification.tissue.trial import Preparation, prepare
+from nrs_design.identification.tissue.settings import Preparation
+from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import motors, synthetic
 from tests.identification.support import holds, quick, record, slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -14,10 +15,13 @@ from nrs_design.identification.actuator.fit import (
     scan_motor,
     tells_friction,
 )
-from nrs_design.identification.datasets.records import SignalRecord, doubt_step
+from nrs_design.identification.datasets.records import (
+    AbstractIdentification,
+    SignalRecord,
+    doubt_step,
+)
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.statistics import WHITE, Estimate, span
-from nrs_design.identification.tables.table import Source
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS
 
@@ -34,18 +38,17 @@ _MISSED = 0.01
 _UNSURE = 0.5
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ActuatorIdentification:
+@dataclass(frozen=True, eq=False)
+class ActuatorIdentification(AbstractIdentification[SignalRecord]):
     """Motor identified from records, with intervals and doubts."""
 
-    records: tuple[SignalRecord, ...]  # The data
     fit: ActuatorFit  # The motor
-    doubts: tuple[str, ...]  # Evidence against the fit
 
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        """The files."""
-        return tuple(record.source for record in self.records)
+    @cached_property
+    def doubts(self) -> tuple[str, ...]:
+        """Evidence against the fit."""
+        slips = _slips(self.fit, self.unit)
+        return (*doubt_step(self.step), *slips, *find_doubts(self.records, self.fit))
 
     @property
     def unit(self) -> str:
@@ -61,11 +64,6 @@ class ActuatorIdentification:
     def covers(self) -> str:
         """Coverage of the ranges, in words."""
         return MOTOR_COVERS["confidence"]
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """Pauses in the records, in words."""
-        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
     def clear_dead_time(self) -> Estimate | None:
@@ -95,10 +93,7 @@ def identify_actuator(records: Sequence[SignalRecord]) -> ActuatorIdentification
     The ranges for a spec hold the recorded motor, and no other.
     """
     _check(records)
-    fit = _fit(records)
-    step = min(record.step for record in records)
-    doubts = (*doubt_step(step), *_slips(fit, records[0].unit), *find_doubts(records, fit))
-    return ActuatorIdentification(tuple(records), fit, doubts)
+    return ActuatorIdentification(tuple(records), _fit(records))
 
 
 def _check(records: Sequence[SignalRecord]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.audit import Audit, AuditCheck
+from nrs_design.api.audit import Audit
 from nrs_design.api.identified import FittedRange, Identification
 from nrs_design.identification.actuator.identify import identify_actuator
 from nrs_design.identification.datasets.records import read_actuator, read_signals, read_tissue
@@ -17,7 +17,7 @@ from nrs_design.identification.reporting.delay import view_delay
 from nrs_design.identification.reporting.running import run_facts
 from nrs_design.identification.reporting.tissue import view_tissue
 from nrs_design.identification.reporting.view import FindingView, is_synthetic
-from nrs_design.identification.running.bounds import Check, proof_of, read_run_bounds
+from nrs_design.identification.running.bounds import proof_of, read_run_bounds
 from nrs_design.identification.running.judge import judge_run
 from nrs_design.identification.running.log import read_run
 from nrs_design.identification.tables.columns import parse_mapping
@@ -107,20 +107,12 @@ def judge_log(log: Path, loaded: LoadedSpec, certificate: Path | None) -> Audit:
     check_turning(loaded.spec, loaded.path)
     reason, losable = proof_of(certificate, loaded)
     result = judge_run(read_run(log), read_run_bounds(loaded), proved=not reason, losable=losable)
-    checks = {id(check): _audit_check(check) for check in result.checks}
     return Audit(
         name=loaded.spec.name,
         verdict=result.verdict,
         unproved_because=reason,
-        checks=tuple(checks.values()),
-        first=None if result.first is None else checks[id(result.first)],
+        checks=result.checks,
+        first=result.first,
         synthetic=result.log.source.synthetic,
         facts=run_facts(result, loaded, certificate, reason),
     )
-
-
-def _audit_check(check: Check) -> AuditCheck:
-    first = check.first
-    when, event = (None, "") if first is None else (first.time, first.words)
-    status = str(check.status)
-    return AuditCheck(check.name, status, check.measured, check.allowed, check.basis, when, event)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Self
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer
 from nrs_design.cli.errors import error_summary, print_error
-from nrs_design.cli.printing import insist, note, progress
+from nrs_design.cli.printing import detail, insist, note, progress, say, wants_details
+from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from datetime import datetime
 
+    from nrs_design.identification.reporting.view import FindingView
     from nrs_design.identification.spec_document import Merged
-    from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
 
@@ -52,20 +53,15 @@ class Destinations:
             check_place(write)
         return cls(spec, report, date)
 
-    def deliver(
-        self,
-        answer: Answer,
-        page: Callable[[], Report],
-        merge: Callable[[LoadedSpec], Merged] | None = None,
-        doubts: Iterable[str] = (),
-    ) -> Answer:
-        """Write a result to where it is wanted; return the answer, with what a spec has refused.
+    def deliver(self, view: FindingView, merge: Callable[[LoadedSpec], Merged]) -> Answer:
+        """Write a result to spec and page; return the answer, with the refusal of the spec.
 
-        `merge` returns the spec with the result in it, and its doubts, on which the gate fails:
-        they are said in the place of those of the result, and make it inconclusive.
+        `merge` returns the spec with the result in it, and its doubts, on which the gate fails.
+        They replace the doubts of the result, and make it inconclusive.
         """
-        spec, refused, merged = self.spec, None, None
-        if merge is not None and spec is not None:
+        spec, doubts = self.spec, view.result.doubts
+        refused = merged = None
+        if spec is not None:
             try:
                 merged = merge(spec)
             except NrsDesignError as error:
@@ -78,22 +74,40 @@ class Destinations:
 
             with progress("figures"):
                 day = self.date.date() if self.date else None
-                write_output(self.report, render_html(replace(page(), date=day)), replaces=PAGE)
+                write_output(
+                    self.report, render_html(replace(view.page(), date=day)), replaces=PAGE
+                )
             note(f"page written to {self.report}")
         if refused is None:
             # No option silences this.
             for doubt in doubts if merged is None else merged.doubts:
                 insist(f"warning: {doubt}")
-        if spec is None:
-            return answer
-        code = answer.code if refused is None else exit_codes.USAGE
-        if merged is not None:
+        code = exit_codes.INCONCLUSIVE if doubts else exit_codes.PROVED
+        written = {} if spec is None else {"not_written": refused and error_summary(refused)}
+        if refused is not None:
+            code = exit_codes.USAGE
+        elif spec is not None and merged is not None:
             _write_spec(spec, merged)
             code = exit_codes.INCONCLUSIVE if merged.fails_gate else code
-        not_written = None if refused is None else error_summary(refused)
-        return replace(
-            answer, facts=lambda: answer.facts() | {"not_written": not_written}, code=code
-        )
+        return Answer(lambda: view.document | written, lambda: _show(view), code)
+
+
+def _show(view: FindingView) -> None:
+    from nrs_design.identification.reporting.view import SYNTHETIC, is_synthetic
+
+    if is_synthetic(view.result.sources):
+        say(SYNTHETIC)
+    if view.fits is not None and wants_details():
+        # The table of the page, without its caption.
+        print_table("", view.fits.columns, view.fits.rows)
+    for line in view.lines:
+        say(line)
+    for line in view.details:
+        detail(line)
+    for remark in view.result.remarks:
+        say(remark)
+    for doubt in view.result.doubts:
+        say(f"doubt: {doubt}")
 
 
 def _write_spec(spec: LoadedSpec, merged: Merged) -> None:

@@ -6,26 +6,19 @@ from collections.abc import Callable, Sequence
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 import typer
 
-from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import Date
-from nrs_design.cli.printing import detail, progress, say, wants_details
-from nrs_design.cli.tables import print_table
+from nrs_design.cli.printing import progress
 from nrs_design.errors import SpecError
 from nrs_design.identification.cli.destinations import Destinations
 from nrs_design.identification.errors import DataError
 from nrs_design.models.contact import LAWS
 from nrs_design.spec.kinds import ANGLE, LENGTH, LEVER_ARM
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
-
-if TYPE_CHECKING:
-    from nrs_design.identification.reporting.view import FindingView
-    from nrs_design.identification.spec_document import Merged
-    from nrs_design.spec import LoadedSpec
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
@@ -74,34 +67,6 @@ def read_all(
     mapping = parse_mapping(entries)
     with progress("reading"):
         return [read(path, mapping) for path in paths]
-
-
-def _deliver(
-    outputs: Destinations, view: FindingView, merge: Callable[[LoadedSpec], Merged]
-) -> Answer:
-    """Print and write a result; with doubts, the answer is inconclusive."""
-    doubts = view.result.doubts
-    code = exit_codes.INCONCLUSIVE if doubts else exit_codes.PROVED
-    answer = Answer(lambda: view.document, partial(_show, view), code)
-    return outputs.deliver(answer, view.page, merge, doubts)
-
-
-def _show(view: FindingView) -> None:
-    from nrs_design.identification.reporting.view import SYNTHETIC, is_synthetic
-
-    if is_synthetic(view.result.sources):
-        say(SYNTHETIC)
-    if view.fits is not None and wants_details():
-        # The table of the page, without its caption.
-        print_table("", view.fits.columns, view.fits.rows)
-    for line in view.lines:
-        say(line)
-    for line in view.details:
-        detail(line)
-    for remark in view.result.remarks:
-        say(remark)
-    for doubt in view.result.doubts:
-        say(f"doubt: {doubt}")
 
 
 @identify.command("tissue")
@@ -154,7 +119,7 @@ def tissue(
     from nrs_design.identification.datasets.records import read_tissue
     from nrs_design.identification.reporting.tissue import view_tissue
     from nrs_design.identification.tissue.identify import identify_tissue
-    from nrs_design.identification.tissue.trial import read_preparation
+    from nrs_design.identification.tissue.settings import read_preparation
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
     outputs = Destinations.checked(write, report, date)
@@ -178,11 +143,8 @@ def tissue(
             progress=step,
             declared=requested is None,
         )
-    return _deliver(
-        outputs,
-        view_tissue(result, arm),
-        lambda spec: merge_tissue(spec, result, environment, lever_arm),
-    )
+    view = view_tissue(result, arm)
+    return outputs.deliver(view, lambda spec: merge_tissue(spec, result, environment, lever_arm))
 
 
 @identify.command("actuator")
@@ -212,7 +174,7 @@ def actuator(
     with progress("fitting"):
         result = identify_actuator(records)
     view = view_actuator(result)
-    return _deliver(outputs, view, lambda spec: merge_actuator(spec, result))
+    return outputs.deliver(view, partial(merge_actuator, found=result))
 
 
 @identify.command("delay")
@@ -248,7 +210,8 @@ def delay(
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         result = identify_delay(record)
-    return _deliver(outputs, view_delay(result), lambda spec: merge_sampling(spec, result))
+    view = view_delay(result)
+    return outputs.deliver(view, partial(merge_sampling, found=result))
 
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:

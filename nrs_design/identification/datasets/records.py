@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -35,9 +37,10 @@ _ROUNDING_UNITS = 8
 
 @dataclass(frozen=True, eq=False)
 class AbstractRecord:
-    """What a file says."""
+    """Measured signals of one file."""
 
     source: Source  # The file
+    pauses: str = field(default="", kw_only=True)  # Rows left out for pauses, as a sentence
 
     @property
     def name(self) -> str:
@@ -52,7 +55,6 @@ class TissueRecord(AbstractRecord):
     motion: Motion  # Time in s and deflection in m (rad)
     force: Array  # Shape (n,). In N (N m).
     rotational: bool  # Whether the motion is a rotation about the pivot
-    pauses: str = ""  # What pauses leave out, in words; empty for none
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +68,6 @@ class SignalRecord(AbstractRecord):
     output: Array
     is_angle: bool = True  # Output of a motor: angle, or velocity if False
     unit: str = "rpm"  # Unit of the command: ``rpm``, ``V``, ``A`` or ``counts``
-    pauses: str = ""  # What pauses leave out, in words; empty for none
     names: tuple[str, str] = ("command", "output")  # Names of both columns in the file
 
     @cached_property
@@ -82,6 +83,36 @@ class SignalRecord(AbstractRecord):
         return float(np.polyfit(self.time[:_BEGIN], self.output[:_BEGIN], 2)[1])
 
 
+R = TypeVar("R", bound=AbstractRecord)
+
+
+@dataclass(frozen=True, eq=False)
+class AbstractIdentification(ABC, Generic[R]):
+    """Estimates from records."""
+
+    records: tuple[R, ...]  # The data
+
+    @property
+    @abstractmethod
+    def doubts(self) -> tuple[str, ...]:
+        """Evidence against the estimates: it makes them inconclusive."""
+
+    @property
+    @abstractmethod
+    def caveats(self) -> tuple[str, ...]:
+        """Doubts, and the effects that a proof with these estimates leaves out."""
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """The files."""
+        return tuple(record.source for record in self.records)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Pauses in the records, as sentences."""
+        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
+
+
 def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueRecord:
     """Read a record of ``time_s, deflection_m, force_N`` or ``time_s, angle_rad, torque_Nm``.
 
@@ -93,9 +124,8 @@ def read_tissue(data: Data, mapping: Mapping[str, str] | None = None) -> TissueR
     check_varies(table, table.layout[1], deflection)
     check_varies(table, table.layout[2], force)
     check_saturation(table, table.layout[2], force, deflection)
-    return TissueRecord(
-        table.source, Motion(time, deflection), force, table.layout == ROTATIONAL, pauses
-    )
+    motion, rotational = Motion(time, deflection), table.layout == ROTATIONAL
+    return TissueRecord(table.source, motion, force, rotational, pauses=pauses)
 
 
 def read_actuator(data: Data, mapping: Mapping[str, str] | None = None) -> SignalRecord:
@@ -114,7 +144,7 @@ def read_actuator(data: Data, mapping: Mapping[str, str] | None = None) -> Signa
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)
-    return SignalRecord(table.source, time, command, output, is_angle, unit, pauses)
+    return SignalRecord(table.source, time, command, output, is_angle, unit, pauses=pauses)
 
 
 def read_signals(data: Data, mapping: Mapping[str, str]) -> SignalRecord:
@@ -150,12 +180,6 @@ def find_gaps(time: Array) -> Flags:
 
 def check_time(table: MeasurementTable, time: Array) -> tuple[slice, str]:
     """Check that time advances; return the longest rows without a pause, and what is left out."""
-    if len(time) < FEWEST_ROWS:
-        table.fail(
-            f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed",
-            max(len(time) - 1, 0),
-            "record longer",
-        )
     check_advance(table, time)
     rows = longest_stretch(time)
     if rows.stop - rows.start < FEWEST_ROWS:
@@ -183,7 +207,10 @@ def longest_stretch(time: Array) -> slice:
 
 
 def check_advance(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances."""
+    """Check that there are enough rows, and that time advances."""
+    if len(time) < FEWEST_ROWS:
+        message = f"the record has {len(time)} rows, at least {FEWEST_ROWS} are needed"
+        table.fail(message, max(len(time) - 1, 0), "record longer")
     steps = np.diff(time)
     stuck = np.flatnonzero(steps <= 0)
     if len(stuck):
@@ -194,7 +221,7 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
             row,
             "sort the rows, or remove the doubled ones",
         )
-    if len(time) and float(np.ptp(time)) <= SMALLEST:
+    if float(np.ptp(time)) <= SMALLEST:
         table.fail("time hardly advances", len(time) - 1, "write it in s, ms, us or ns")
 
 

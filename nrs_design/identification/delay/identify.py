@@ -11,7 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, doubt_step
+from nrs_design.identification.datasets.records import (
+    FEWEST_ROWS,
+    AbstractIdentification,
+    SignalRecord,
+    doubt_step,
+)
 from nrs_design.identification.delay.fit import (
     EXACT,
     AbstractFollower,
@@ -33,7 +38,6 @@ from nrs_design.identification.statistics import (
     joint_level,
     student_quantile,
 )
-from nrs_design.identification.tables.table import Source
 from nrs_design.spec.plausible import doubt_size
 
 # Longest delay in the search, as a part of the record.
@@ -72,7 +76,7 @@ _SCANNED = 5000
 
 
 @dataclass(frozen=True, eq=False)
-class DelayIdentification:
+class DelayIdentification(AbstractIdentification[SignalRecord]):
     """What a record says about a delay."""
 
     fits: tuple[DelayFit, ...]  # One for each model, a copy of the command first
@@ -84,7 +88,7 @@ class DelayIdentification:
     @property
     def record(self) -> SignalRecord:
         """The data."""
-        return self.chosen.record
+        return self.records[0]
 
     @property
     def smooth(self) -> bool:
@@ -176,11 +180,6 @@ class DelayIdentification:
         return f"not told by this record: its interval is longer than the {length:.3g} s"
 
     @property
-    def sources(self) -> tuple[Source, ...]:
-        """The file."""
-        return (self.record.source,)
-
-    @property
     def remarks(self) -> tuple[str, ...]:
         """What the interval rests on, in words."""
         command = self.record.names[0]
@@ -234,7 +233,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     lowest = min(fit.bic for fit in fits)
     good = [fit for fit in fits if fit.bic <= lowest + _CLEARLY]
     chosen = min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
-    found = DelayIdentification(fits, chosen, peak)
+    found = DelayIdentification((record,), fits, chosen, peak)
     _check_explained(found)
     return found
 

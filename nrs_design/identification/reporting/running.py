@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from nrs_design.api.audit import AuditCheck
 from nrs_design.identification.reporting.view import Facts, source_facts
-from nrs_design.identification.running.bounds import Check
 from nrs_design.identification.running.judge import RunJudgement
 from nrs_design.spec import LoadedSpec
 
@@ -19,9 +19,7 @@ CLAIMS = {
 def first_violation(run: RunJudgement) -> str:
     """Say what was left first, and when; empty for nothing."""
     first = run.first
-    if first is None or first.first is None:
-        return ""
-    return f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}"
+    return f"first at t = {first.time:.6g} s: {first.name}: {first.violation}" if first else ""
 
 
 def run_facts(
@@ -37,11 +35,11 @@ def run_facts(
         "log": source_facts([run.log.source]),
         "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
         "certificate": None if certificate is None else str(certificate),
-        "first_violation": _violation(first) if first is not None else None,
+        "first_violation": first and _violation(first),
         "checks": [
             {
                 "name": c.name,
-                "status": str(c.status),
+                "status": c.status,
                 "measured": c.measured,
                 "allowed": c.allowed or None,
                 "basis": c.basis or None,
@@ -53,7 +51,7 @@ def run_facts(
     }
 
 
-def _violation(check: Check) -> Facts | None:
-    if check.first is None:
+def _violation(check: AuditCheck) -> Facts | None:
+    if check.time is None:
         return None
-    return {"check": check.name, "time_s": check.first.time, "what": check.first.words}
+    return {"check": check.name, "time_s": check.time, "what": check.violation}

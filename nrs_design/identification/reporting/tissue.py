@@ -15,8 +15,9 @@ from nrs_design.identification.reporting.view import (
 from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue.identify import TissueIdentification
 from nrs_design.identification.tissue.output_error import RecordFit
-from nrs_design.identification.tissue.pool import ModelFit, Tangent
+from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.problem import DRIFT, TARE, ZERO
+from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Table

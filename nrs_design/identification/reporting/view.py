@@ -18,15 +18,9 @@ from nrs_design.reporting.style import BLUE, INK, VERMILLION, legend, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from nrs_design.identification.actuator.identify import ActuatorIdentification
-    from nrs_design.identification.delay.identify import DelayIdentification
+    from nrs_design.identification.datasets.records import AbstractIdentification
     from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tables.table import Source
-    from nrs_design.identification.tissue.identify import TissueIdentification
-
-    # Each has its sources; remarks on what the numbers rest on; doubts that make them inconclusive;
-    # and caveats for a proof that uses them: the doubts, and what it leaves out.
-    Finding = TissueIdentification | ActuatorIdentification | DelayIdentification
 
 
 def is_synthetic(sources: Sequence[Source]) -> bool:
@@ -65,7 +59,7 @@ class Curve:
 class FindingView:
     """A finding in words and numbers."""
 
-    result: Finding
+    result: AbstractIdentification[Any]
     kind: str  # ``tissue``, ``actuator`` or ``delay``
     chosen: str  # Law, method or model
     reason: str  # Reason of the choice, or the columns

@@ -4,52 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from pathlib import Path
-from typing import Self
 
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.errors import CertificateError, DesignError
 from nrs_design.proof.evidence import Shows
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec
-
-
-class BoundStatus(StrEnum):
-    """Result of a check."""
-
-    INSIDE = "inside"
-    OUTSIDE = "outside"
-    # Intervals lie across the bound.
-    UNDECIDED = "undecided"
-    NOT_JUDGED = "not judged"
-    # The proof assumes that the effect is absent, and has no bound.
-    NOT_MODELLED = "not modelled"
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """Where a run first left a bound."""
-
-    time: float  # In s, as in the log
-    words: str  # What happened
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One bound and what the run says about it."""
-
-    name: str  # Quantity or rule
-    status: BoundStatus  # The outcome
-    measured: str  # What the log shows, or the reason for no verdict
-    allowed: str = ""  # The bound
-    basis: str = ""  # Origin of the bound
-    first: Violation | None = None  # The first time it was left
-
-    @classmethod
-    def open(cls, name: str, reason: str, allowed: str = "", basis: str = "") -> Self:
-        """Return a check that is not judged."""
-        return cls(name, BoundStatus.NOT_JUDGED, reason, allowed, basis)
 
 
 @dataclass(frozen=True, slots=True)

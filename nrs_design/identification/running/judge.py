@@ -7,11 +7,12 @@ from fractions import Fraction
 
 import numpy as np
 
+from nrs_design.api.audit import AuditCheck, Status
 from nrs_design.identification.datasets.records import FEWEST_ROWS, SignalRecord, longest_stretch
 from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.rounding import noise_variance
-from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
+from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.sector import judge_sector
 from nrs_design.identification.running.stays import judge_stays
@@ -30,23 +31,23 @@ class RunJudgement:
 
     log: RunLog  # The data
     bounds: RunBounds  # What the spec promises
-    checks: tuple[Check, ...]  # One for each bound
+    checks: tuple[AuditCheck, ...]  # One for each bound
     # Share of the rows in which a stiffness far off would show; None without a test.
     judged: float | None = None
 
     @property
-    def first(self) -> Check | None:
+    def first(self) -> AuditCheck | None:
         """The check that was violated first, or None."""
-        left = [check for check in self.checks if check.first is not None]
-        return min(left, key=lambda c: c.first.time if c.first else 0.0, default=None)
+        violated = [(c.time, i) for i, c in enumerate(self.checks) if c.time is not None]
+        return self.checks[min(violated)[1]] if violated else None
 
     @property
     def verdict(self) -> str:
         """``outside``, ``inside``, or ``inconclusive``."""
         statuses = {check.status for check in self.checks}
-        if BoundStatus.OUTSIDE in statuses:
+        if "outside" in statuses:
             return "outside"
-        open_ends = statuses & {BoundStatus.UNDECIDED, BoundStatus.NOT_JUDGED}
+        open_ends = statuses & {"undecided", "not judged"}
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 
@@ -79,61 +80,61 @@ def judge_run(
         _judge_saturation(log, bounds),
         _judge_force(log, bounds),
         *(
-            Check.open(f"preload of {name}", _NO_SURFACE, allowed, bounds.assumed_by)
+            AuditCheck(f"preload of {name}", "not judged", _NO_SURFACE, allowed, bounds.assumed_by)
             for name, allowed in bounds.preloads.items()
         ),
     )
     return RunJudgement(log, bounds, checks, judged)
 
 
-def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> Check:
+def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> AuditCheck:
     """Return the check of lost contact; `losable` is None if nothing states it."""
     if losable:
         basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
         allowed = "lost and made again at any time"
-        return Check("contact", BoundStatus.INSIDE, "may be lost", allowed, basis)
+        return AuditCheck("contact", "inside", "may be lost", allowed, basis)
     if losable is None:
         basis = "`contact` of the spec, or a certificate, says whether it may be lost"
-        return Check.open("contact", _NO_LOSS, "not said", basis)
-    return Check.open("contact", _NO_LOSS, "kept all the time", f"assumption of {bounds.source}")
+        return AuditCheck("contact", "not judged", _NO_LOSS, "not said", basis)
+    basis = f"assumption of {bounds.source}"
+    return AuditCheck("contact", "not judged", _NO_LOSS, "kept all the time", basis)
 
 
-def _judge_delay(log: RunLog, bounds: RunBounds) -> Check:
+def _judge_delay(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge how late the motion follows the command."""
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
     if "command" not in log.columns or seen is None:
         missing = "command" if "command" not in log.columns else "angle or velocity"
-        return Check.open("delay", f"no column for {missing}")
+        return AuditCheck("delay", "not judged", f"no column for {missing}")
     rows = longest_stretch(log.time)
     if rows.stop - rows.start < FEWEST_ROWS:
-        return Check.open("delay", f"no {FEWEST_ROWS} rows without a gap")
+        return AuditCheck("delay", "not judged", f"no {FEWEST_ROWS} rows without a gap")
     time, sent, moved = log.time[rows], log.columns["command"][rows], log.columns[seen][rows]
     try:
         found = identify_delay(
             SignalRecord(log.source, time - time[0], sent, moved, names=("command", seen))
         )
     except DataError as error:
-        return Check.open("delay", error.message)
+        return AuditCheck("delay", "not judged", error.message)
     low, high = found.delay.low, found.delay.high
     if found.untold is not None:
-        return Check.open("delay", found.untold)
+        return AuditCheck("delay", "not judged", found.untold)
     outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
     words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
-        return Check.open("delay", f"not told by this record: {found.doubts[0]}")
+        return AuditCheck("delay", "not judged", f"not told by this record: {found.doubts[0]}")
     if bounds.delay is None:
-        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
+        return AuditCheck("delay", "not modelled", words, _time_of(bounds), bounds.assumed_by)
     # Beside gaps, only the longest stretch is judged.
     whole = rows.stop - rows.start == len(log.time)
-    status = BoundStatus.INSIDE if high < bounds.delay and whole else BoundStatus.UNDECIDED
-    first = None
+    status: Status = "inside" if high < bounds.delay and whole else "undecided"
+    allowed, basis = f"below {bounds.delay:g} s", "delay margin of the design"
     if low > bounds.delay:
-        status, first = BoundStatus.OUTSIDE, Violation(log.begin, words)
-    allowed = f"below {bounds.delay:g} s"
-    return Check("delay", status, words, allowed, "delay margin of the design", first)
+        return AuditCheck("delay", "outside", words, allowed, basis, log.begin, words)
+    return AuditCheck("delay", status, words, allowed, basis)
 
 
-def _judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
+def _judge_jitter(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge how even the steps of time are."""
     steps = np.diff(log.time)
     words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
@@ -142,7 +143,7 @@ def _judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
         count = max(round(log.step / bounds.period), 1)
         if abs(log.step - count * bounds.period) > _UNEVEN * bounds.period:
             words += f": no whole number of periods of {bounds.period:g} s"
-    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), bounds.assumed_by)
+    return AuditCheck("jitter", "not modelled", words, _time_of(bounds), bounds.assumed_by)
 
 
 def _time_of(bounds: RunBounds) -> str:
@@ -156,26 +157,26 @@ def _time_of(bounds: RunBounds) -> str:
     return f"none: the {model} is about a motion without dead time, sampled {period_text}"
 
 
-def _judge_saturation(log: RunLog, bounds: RunBounds) -> Check:
+def _judge_saturation(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge whether the command met the limit of the driver."""
     limit = bounds.saturates
     if "command" not in log.columns:
-        return Check.open("saturation", "no column for command")
+        return AuditCheck("saturation", "not judged", "no column for command")
     size = np.abs(log.columns["command"])
     largest = f"largest command {size.max():.5g} {log.command_unit}"
     if limit is None:
         unknown = "where the driver saturates is not known: give the spec `limits: command`"
-        return Check.open("saturation", f"{largest}; {unknown}")
+        return AuditCheck("saturation", "not judged", f"{largest}; {unknown}")
     allowed = f"below {limit:g} {log.command_unit}"
     rows = np.flatnonzero(size >= limit)
     if not len(rows):
-        return Check("saturation", BoundStatus.INSIDE, largest, allowed, bounds.assumed_by)
+        return AuditCheck("saturation", "inside", largest, allowed, bounds.assumed_by)
     words = f"the command is {log.columns['command'][rows[0]]:.5g} {log.command_unit}"
-    first = Violation(log.begin + float(log.time[rows[0]]), words)
-    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, bounds.assumed_by, first)
+    basis, time = bounds.assumed_by, log.time_of(rows[0])
+    return AuditCheck("saturation", "outside", largest, allowed, basis, time, words)
 
 
-def _judge_force(log: RunLog, bounds: RunBounds) -> Check:
+def _judge_force(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge the torque against the limit of the design."""
     allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
     if bounds.proved:
@@ -184,7 +185,7 @@ def _judge_force(log: RunLog, bounds: RunBounds) -> Check:
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm
     if torque is None:
-        return Check.open("force", "no column for torque or force", allowed, basis)
+        return AuditCheck("force", "not judged", "no column for torque or force", allowed, basis)
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # Largest noise of any row, at 95 % for all rows together.
@@ -192,8 +193,9 @@ def _judge_force(log: RunLog, bounds: RunBounds) -> Check:
     noise *= float(np.sqrt(noise_variance(torque)))
     rows = np.flatnonzero(size - noise > bounds.torque)
     if not len(rows):
-        status = BoundStatus.UNDECIDED if size.max() > bounds.torque else BoundStatus.INSIDE
-        return Check("force", status, f"{largest}, noise up to {noise:.2g} N m", allowed, basis)
+        status: Status = "undecided" if size.max() > bounds.torque else "inside"
+        largest += f", noise up to {noise:.2g} N m"
+        return AuditCheck("force", status, largest, allowed, basis)
     words = f"the torque is {torque[rows[0]]:.4g} N m"
-    first = Violation(log.begin + float(log.time[rows[0]]), words)
-    return Check("force", BoundStatus.OUTSIDE, largest, allowed, basis, first)
+    time = log.time_of(rows[0])
+    return AuditCheck("force", "outside", largest, allowed, basis, time, words)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.identification.datasets.records import FEWEST_ROWS, check_advance, find_gaps
+from nrs_design.identification.datasets.records import check_advance, find_gaps
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.numeric import Array, Flags, Rows, usual_step
 from nrs_design.identification.tables.table import Data, Source, read_table
@@ -42,6 +42,10 @@ class RunLog:
         """Index of the label in force at every row, or None."""
         return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
 
+    def time_of(self, row: float) -> float:
+        """Return the time of a row in the file, in s."""
+        return self.begin + float(self.time[int(row)])
+
     def convert_to_radians(self) -> RunLog:
         """Return the log with a command that is a velocity in rad/s, as a robot takes it."""
         if self.command_unit != "rpm":
@@ -65,9 +69,6 @@ def read_run(data: Data, mapping: Mapping[str, str] | None = None) -> RunLog:
             path=table.source.path,
             remedy="name columns such as angle_rad, torque_Nm, command_rpm, mode; see --map",
         )
-    if len(time) < FEWEST_ROWS:
-        table.fail(f"the log has {len(time)} rows, at least {FEWEST_ROWS} are needed",
-                   max(len(time) - 1, 0), "log longer")  # fmt: skip
     check_advance(table, time)
     unit = table.columns["command"].unit if "command" in columns else ""
     return RunLog(table.source, time - time[0], columns, table.labels, float(time[0]), unit)

@@ -9,9 +9,10 @@ from math import ceil, floor, inf
 
 import numpy as np
 
+from nrs_design.api.audit import AuditCheck
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
-from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
+from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 
@@ -38,7 +39,7 @@ class _Rows:
     last: Array
 
 
-def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], float | None]:
+def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[AuditCheck, ...], float | None]:
     """Hold a log against the range of stiffness.
 
     The checks are of the stiffness, and of the speed where the spec bounds it; the share is of the
@@ -47,15 +48,15 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[Check, ...], flo
     sector, columns = bounds.sector, _columns(log, bounds)
     if columns is None:
         words = "no columns for angle and torque, nor for deflection and force with a lever arm"
-        return (Check.open("stiffness", words),), None
+        return (AuditCheck("stiffness", "not judged", words),), None
     if isinstance(sector, str):
-        return (Check.open("stiffness", sector),), None
+        return (AuditCheck("stiffness", "not judged", sector),), None
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
     allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
     every = bounds.period or bounds.oldest or inf
     if (bounds.oldest or sector.surface != "fixed") and log.step > _LONGEST_STEP * every:
         words = "rows are missing that the age of a torque, or a contact, is told by: log all"
-        return (Check.open("stiffness", words, allowed, basis),), 0.0
+        return (AuditCheck("stiffness", "not judged", words, allowed, basis),), 0.0
     rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _AGE_TOLERANCE))
     certain = rows.least > 0
     first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
@@ -139,25 +140,23 @@ def _one_surface(
 
 def _stiffness(
     log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
-) -> Check:
+) -> AuditCheck:
     percent = floor(1000 * share) / 10
     within = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
     if first == inf:
         words = f"the range explains every row; {within}"
-        return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
-    at = int(first)
-    violation = Violation(
-        log.begin + float(log.time[at]),
-        f"no stiffness of the range explains {torque[at]:.4g} N m and the rows before",
-    )
-    return Check("stiffness", BoundStatus.OUTSIDE, within, allowed, basis, violation)
+        return AuditCheck("stiffness", "undecided", words, allowed, basis)
+    words = f"no stiffness of the range explains {torque[int(first)]:.4g} N m and the rows before"
+    time = log.time_of(first)
+    return AuditCheck("stiffness", "outside", within, allowed, basis, time, words)
 
 
-def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Check]:
+def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[AuditCheck]:
     """Judge the speed of the joint, where the spec says one for its readings."""
     if sector.speed is None:
         return
     name, limit = "speed of the joint", float(sector.speed)
+    allowed = f"up to {limit:.4g} rad/s"
     # Stamps may be early or late where the samples are not.
     step = np.maximum(np.diff(log.time), log.step)
     size = np.abs(np.diff(angle))
@@ -165,9 +164,8 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Ch
     rows_above = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
     measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
     if not len(rows_above):
-        yield Check(name, BoundStatus.INSIDE, measured, f"up to {limit:.4g} rad/s", basis)
+        yield AuditCheck(name, "inside", measured, allowed, basis)
         return
-    at = int(rows_above[0]) + 1
-    words = f"{size[at - 1]:.3g} rad in {step[at - 1]:.3g} s"
-    first = Violation(log.begin + float(log.time[at]), words)
-    yield Check(name, BoundStatus.OUTSIDE, measured, f"up to {limit:.4g} rad/s", basis, first)
+    row = int(rows_above[0])
+    words = f"{size[row]:.3g} rad in {step[row]:.3g} s"
+    yield AuditCheck(name, "outside", measured, allowed, basis, log.time_of(row + 1), words)

@@ -8,8 +8,9 @@ from math import inf
 
 import numpy as np
 
+from nrs_design.api.audit import AuditCheck
 from nrs_design.identification.numeric import Rows, parted
-from nrs_design.identification.running.bounds import BoundStatus, Check, RunBounds, Violation
+from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 from nrs_design.proof.text import counted
@@ -33,33 +34,33 @@ class _Stay:
     gap: bool  # Whether rows are missing within or next to the stay
 
 
-def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
+def judge_stays(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge times in each mode, and the order of modes."""
     allowed, basis = _rules_text(bounds), f"switching rules of {bounds.source}"
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"
-        return Check.open(_NAME, reason, "", basis)
+        return AuditCheck(_NAME, "not judged", reason, "", basis)
     if (modes := log.modes) is None:
         if not allowed:
-            return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)
-        return Check.open(_NAME, "no column for mode", allowed, basis)
+            return AuditCheck(_NAME, "inside", "any switching is allowed", "arbitrary", basis)
+        return AuditCheck(_NAME, "not judged", "no column for mode", allowed, basis)
     stays = list(_stays(log, modes))
     unknown = [stay.mode for stay in stays if stay.mode not in bounds.dwell_times]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
-        return Check.open(_NAME, reason, allowed, basis)
+        return AuditCheck(_NAME, "not judged", reason, allowed, basis)
     measured = counted(len(stays) - 1, "switch")
     if not allowed:
-        return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
+        return AuditCheck(_NAME, "inside", measured, "arbitrary", basis)
     step = float(np.diff(log.time).max())
     # With a row for every sample of the loop, no stay is shorter.
     if bounds.period is None or step > _LONGEST_STEP * bounds.period:
         measured += f"; a stay between two rows (up to {step:.3g} s) is not seen"
     if (first := next(_violations(stays, bounds), None)) is not None:
-        return Check(_NAME, BoundStatus.OUTSIDE, measured, allowed, basis, first)
+        return AuditCheck(_NAME, "outside", measured, allowed, basis, *first)
     if (doubt := next(_doubts(stays, bounds), None)) is not None:
-        return Check(_NAME, BoundStatus.UNDECIDED, f"{measured}; {doubt}", allowed, basis)
-    return Check(_NAME, BoundStatus.INSIDE, measured, allowed, basis)
+        return AuditCheck(_NAME, "undecided", f"{measured}; {doubt}", allowed, basis)
+    return AuditCheck(_NAME, "inside", measured, allowed, basis)
 
 
 def _rules_text(bounds: RunBounds) -> str:
@@ -92,21 +93,21 @@ def _stays(log: RunLog, modes: Rows) -> Iterator[_Stay]:
         )
 
 
-def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
-    """Yield what no reading of the log allows."""
+def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[tuple[float, str]]:
+    """Yield time in s and text of each violation that is certain."""
     before = ""
     for stay in stays:
         shortest, longest = bounds.dwell_times[stay.mode]
         allowed = bounds.transitions
         ordered = allowed is None or not before or (before, stay.mode) in allowed
         if not ordered and not stay.gap:
-            yield Violation(stay.begin, f"{before} was followed by {stay.mode}")
+            yield stay.begin, f"{before} was followed by {stay.mode}"
         if stay.longest < shortest:
             words = f"{stay.mode} lasted {stay.longest:.4g} s at most, not {shortest:g} s"
-            yield Violation(stay.begin, words)
+            yield stay.begin, words
         if stay.shortest > longest and not stay.gap:
             words = f"{stay.mode} lasted {stay.shortest:.4g} s at least, not {longest:g} s"
-            yield Violation(stay.begin, words)
+            yield stay.begin, words
         before = stay.mode
 
 

@@ -5,41 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from nrs_design.identification.datasets.records import TissueRecord
+from nrs_design.identification.datasets.records import AbstractIdentification, TissueRecord
 from nrs_design.identification.errors import DataError
-from nrs_design.identification.tables.table import Source
-from nrs_design.identification.tissue.pool import (
-    ModelFit,
-    Tangent,
-    check_preload,
-    fit_model,
-    tangent_of,
-)
-from nrs_design.identification.tissue.trial import Preparation, prepare
+from nrs_design.identification.tissue.pool import ModelFit, fit_model
+from nrs_design.identification.tissue.settings import Preparation
+from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
+from nrs_design.identification.tissue.trial import prepare
 from nrs_design.models.contact import LAWS, AbstractNonlinearLaw, HuntCrossley
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.provenance import COVERS, Coverage
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TissueIdentification:
+@dataclass(frozen=True, eq=False)
+class TissueIdentification(AbstractIdentification[TissueRecord]):
     """All laws on the same records, and the choice among them."""
 
-    records: tuple[TissueRecord, ...]  # The data
     models: tuple[ModelFit, ...]  # In the order of `LAWS`
     chosen: ModelFit  # The chosen law
     reason: str  # Reason of the choice
     tangent: Tangent | None = None  # Tangent of the chosen law at a preload
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        """The files."""
-        return tuple(record.source for record in self.records)
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """Pauses in the records, in words."""
-        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
     def doubts(self) -> tuple[str, ...]:

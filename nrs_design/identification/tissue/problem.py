@@ -11,7 +11,7 @@ force: one in air and one in contact. Where a record has no air, only their sum 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -38,23 +38,6 @@ _STEP = 1e-6
 # First guesses of the position of contact, in travels of the record.
 _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 ZERO, TARE, CONTACT, DRIFT = "zero", "tare", "contact", "drift"
-
-
-def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
-    """Return the offsets that add to the force in proportion."""
-    keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
-    both = (TARE, CONTACT) if keeps_force and trial.contact is not None else (TARE,)
-    return (*both, DRIFT) if trial.drift else both
-
-
-def offset_columns(names: Sequence[str], trial: Trial) -> Array:
-    """Return the force that a unit of each offset adds to all samples, shape (n, m)."""
-    columns = {
-        TARE: np.ones(len(trial.used)),
-        CONTACT: trial.touching.astype(float),
-        DRIFT: trial.motion.time - trial.motion.time[0],
-    }
-    return np.column_stack([columns[name] for name in names])
 
 
 def place_offsets(
@@ -134,13 +117,27 @@ class LeastSquaresProblem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Which offsets are fitted."""
-        return offset_names(self.kind, self.trial)
+        """The offsets that are fitted, and add to the force in proportion."""
+        kind, trial = self.kind, self.trial
+        keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
+        constants = (TARE, CONTACT) if keeps_force and trial.contact is not None else (TARE,)
+        return (*constants, DRIFT) if trial.drift else constants
+
+    @cached_property
+    def offset_columns(self) -> Array:
+        """Force that a unit of each offset adds to all samples, shape (n, m)."""
+        trial = self.trial
+        columns = {
+            TARE: np.ones(len(trial.used)),
+            CONTACT: trial.touching.astype(float),
+            DRIFT: trial.motion.time - trial.motion.time[0],
+        }
+        return np.column_stack([columns[name] for name in self.names])
 
     @cached_property
     def offsets(self) -> Array:
-        """Force per unit of each offset, shape (n, m)."""
-        return offset_columns(self.names, self.trial)[self.trial.used]
+        """The columns of the offsets in the used samples."""
+        return self.offset_columns[self.trial.used]
 
     @cached_property
     def begins(self) -> tuple[slice, ...]:
@@ -313,7 +310,6 @@ class Point:
     @property
     def whole_force(self) -> Array:
         """The force in all samples, used or not, with its tare."""
-        offsets = offset_columns(self.problem.names, self.problem.trial)
         # Stretches without a used sample have no state of their own.
-        constants = np.column_stack([offsets, self._fading])
+        constants = np.column_stack([self.problem.offset_columns, self._fading])
         return self._pushing(self.law.simulate(self.motion)) + constants @ self.best

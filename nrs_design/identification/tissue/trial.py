@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from math import isfinite
-from typing import Literal
 
 import numpy as np
 
 from nrs_design.identification.datasets.records import TissueRecord
 from nrs_design.identification.errors import DataError
-from nrs_design.identification.named_values import read_named_values
 from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import (
@@ -21,6 +17,7 @@ from nrs_design.identification.tissue.contact import (
     inner,
     surface,
 )
+from nrs_design.identification.tissue.settings import Preparation
 from nrs_design.models.contact import Motion
 from nrs_design.proof.text import counted
 
@@ -35,51 +32,6 @@ _FARTHEST = 0.25
 _FEWEST_IN_AIR, _AIR_SPAN, _LEAST_CONTACT = 30, 0.3, 20
 # A record that begins at this part of its deflection need not begin relaxed.
 _LOADED = 0.1
-
-
-@dataclass(frozen=True, slots=True)
-class Preparation:
-    """Settings for the preparation of all records."""
-
-    # start, end: part of the record, in s from its beginning.
-    start: float | None = None
-    end: float | None = None
-    # Detect air, or treat the whole record as in contact.
-    contact: Literal["auto", "given"] = "auto"
-    negate: bool = False  # Change the sign of the force
-
-
-def read_preparation(entries: Iterable[str]) -> Preparation:
-    """Read how records are prepared; the settings are the fields of `Preparation`.
-
-    ``start=S``, ``end=S``, ``contact=auto|given``, ``negate=true``.
-    """
-    readers: dict[str, Callable[[str], object]] = {
-        "start": _seconds,
-        "end": _seconds,
-        "contact": _out_of("auto", "given"),
-        "negate": lambda text: _out_of("true", "false")(text) == "true",
-    }
-    return Preparation(**read_named_values(entries, readers, "a record"))
-
-
-def _seconds(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = float("nan")
-    if not isfinite(value):
-        raise ValueError("write seconds from the beginning of the record, such as 2.5")
-    return value
-
-
-def _out_of(*choices: str) -> Callable[[str], str]:
-    def read(text: str) -> str:
-        if text not in choices:
-            raise ValueError(f"write one of {', '.join(choices)}")
-        return text
-
-    return read
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from enum import StrEnum
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -14,36 +13,19 @@ from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.robot.cli.options import Tilt
 
-ALL = "all"
-
-
-class ControllerOption(StrEnum):
-    """Which of the three controllers."""
-
-    COMPUTED_TORQUE = "computed-torque"
-    INDEPENDENT_JOINT = "independent-joint"
-    BALANCED = "balanced"
-    ALL = ALL
-
-
-class ExperimentOption(StrEnum):
-    """Which coordinate moves."""
-
-    D = "d"
-    PHI = "phi"
-    PSI = "psi"
-    ALL = ALL
+ControllerName = Literal["computed-torque", "independent-joint", "balanced", "all"]
+Coordinate = Literal["d", "phi", "psi", "all"]
 
 
 @command("robot-track")
 def track(
     spec: SpecFile,
     controller: Annotated[
-        ControllerOption, typer.Option(help="One controller, or all three.")
-    ] = ControllerOption.ALL,
+        ControllerName, typer.Option(help="One controller, or all three.")
+    ] = "all",
     experiment: Annotated[
-        ExperimentOption, typer.Option(help="What moves, or all three in turn.")
-    ] = ExperimentOption.ALL,
+        Coordinate, typer.Option(help="What moves, or all three in turn.")
+    ] = "all",
     period: Annotated[
         float | None,
         typer.Option(
@@ -67,14 +49,14 @@ def track(
 
     loaded, robot_spec, robot = run_robot(spec)
     robot = robot.tilted(experiment_tilt(robot_spec) if tilt is None else math.radians(tilt))
-    names: tuple[str, ...] = (controller.value,)
-    if controller is ControllerOption.ALL:
+    names: tuple[str, ...] = (controller,)
+    if controller == "all":
         names = tuple(name for name in CONTROLLERS if robot_spec.balance or name != "balanced")
     tracks = [
         one
         for name in names
         for one in build_tracks(robot_spec, robot, name, period)
-        if experiment.value in (ALL, one.experiment.moved)
+        if experiment in ("all", one.experiment.moved)
     ]
     with progress("simulating") as tell:
         runs = [record.summary() for record in simulate(tracks, tell)]

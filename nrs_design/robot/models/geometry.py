@@ -22,26 +22,9 @@ from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, c
 
 
 class PoseError(NrsDesignError):
-    """A pose (phi, psi, d), in rad and m, that the robot cannot take.
-
-    The leg that cannot reach it is overstretched, or folded too far, by the excess in m.
-    """
+    """A pose that the robot cannot take."""
 
     rule = "NRS007"
-
-    def __init__(
-        self,
-        message: str,
-        *,
-        leg: str | None = None,
-        excess: float | None = None,
-        pose: tuple[float, float, float] | None = None,
-        remedy: str | None = None,
-    ) -> None:
-        super().__init__(message, remedy=remedy)
-        self.leg = leg
-        self.excess = excess
-        self.pose = pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,9 +187,6 @@ def unreachable(robot: Robot, pose: ArrayLike) -> PoseError:
         f"the pose phi {np.degrees(phi):.4g} deg, psi {np.degrees(psi):.4g} deg, d {1e3 * d:.4g} "
         f"mm is not reachable: the {leg.name} leg is {what} by {1e3 * excess:.4g} mm (base joint "
         f"to coupler's end {1e3 * distance:.6g} mm, limit {1e3 * limit:.6g} mm)",
-        leg=leg.name,
-        excess=excess,
-        pose=(float(phi), float(psi), float(d)),
         remedy="choose a depth or an angle within the workspace; see `nrs-design robot kinematics`",
     )
 
@@ -214,10 +194,9 @@ def unreachable(robot: Robot, pose: ArrayLike) -> PoseError:
 def _no_direction(pose: ArrayLike, square: Array) -> PoseError:
     poses = np.asarray(pose, dtype=float).reshape(-1, 3)
     row = int(np.argmin(square))
-    phi, psi, d = map(float, poses[row])
+    phi, psi, _ = poses[row]
     return PoseError(
         f"phi {np.degrees(phi):.4g} deg and psi {np.degrees(psi):.4g} deg give no direction of the "
         "endoscope: sin(phi)^2 + sin(psi)^2 must be below 1",
-        pose=(phi, psi, d),
         remedy="choose smaller angles, in rad",
     )

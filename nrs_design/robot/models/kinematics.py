@@ -82,8 +82,6 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
         raise PoseError(
             f"no pose has these joint angles: the elbow of the {leg.name} leg is {1e3 * lack:.4g} "
             "mm too far from the endoscope axis",
-            leg=leg.name,
-            excess=lack,
             remedy="check the joint angles, in rad",
         )
     # Direction of the coupler: along the endoscope, or against the endoscope.

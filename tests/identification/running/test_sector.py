@@ -58,7 +58,7 @@ KINDS = {
 def test_a_stiffness_inside_is_never_told(tmp_path, kind, surface):
     found = judged(tmp_path, pressed(KINDS[kind], seed=len(kind)), bounds(surface))
     stiffness = check(found, "stiffness")
-    assert (str(stiffness.status), stiffness.first) == ("undecided", None)
+    assert (str(stiffness.status), stiffness.time) == ("undecided", None)
     assert stiffness.measured.startswith("the range explains every row; 1.5 times the range would")
     assert found.judged > 0.3
     assert found.verdict == "inconclusive"
@@ -71,9 +71,9 @@ def test_a_stiffness_outside_is_told_once_its_torque_is_enough(tmp_path, factor,
     k = factor * (HIGH if factor > 1 else LOW)
     data = pressed(lambda t, x: np.where(t > 4.0, k, 43.0), late=False)
     found = judged(tmp_path, data, replace(known, torque=5.0))
-    first = check(found, "stiffness").first
+    first = check(found, "stiffness")
     assert found.verdict == "outside"
-    assert found.first.first is first
+    assert found.first is first
     # By the need of the monitor, with the travel of two rows.
     need = float(known.sector.need(Fraction(factor), Fraction("0.0001")))
     enough = data[0][(data[0] > 4.0) & (data[2] > need + NOISE)]
@@ -91,20 +91,20 @@ def test_a_stiffness_outside_is_told_once_its_torque_is_enough(tmp_path, factor,
 )
 def test_a_surface_that_moves(tmp_path, surface, known):
     data = pressed(surface=surface)
-    assert check(judged(tmp_path, data, bounds()), "stiffness").first is not None
-    assert check(judged(tmp_path, data, known), "stiffness").first is None
+    assert check(judged(tmp_path, data, bounds()), "stiffness").time is not None
+    assert check(judged(tmp_path, data, known), "stiffness").time is None
 
 
 def test_a_pull_is_told_unless_contact_is_kept(tmp_path):
     t, angle, torque, *rest = pressed()
     torque = np.where(np.arange(len(t)) == 700, -0.0021, torque)
     found = check(judged(tmp_path, (t, angle, torque, *rest), bounds()), "stiffness")
-    assert found.first.time == pytest.approx(1.4)
+    assert found.time == pytest.approx(1.4)
     kept = bounds(text=TEXT.replace("contact: losable", "contact: kept"))
     pulling = (t, angle, 43.0 * angle, *rest)
-    assert check(judged(tmp_path, pulling, kept), "stiffness").first is None
-    assert check(judged(tmp_path, pulling, bounds()), "stiffness").first is not None
-    assert check(judged(tmp_path, (t, angle, 30 * angle, *rest), kept), "stiffness").first
+    assert check(judged(tmp_path, pulling, kept), "stiffness").time is None
+    assert check(judged(tmp_path, pulling, bounds()), "stiffness").time is not None
+    assert check(judged(tmp_path, (t, angle, 30 * angle, *rest), kept), "stiffness").time
 
 
 def test_the_speed_of_the_joint(tmp_path):
@@ -119,8 +119,8 @@ def test_gaps_and_rows_that_are_missing(tmp_path):
     t, angle, torque, *rest = pressed(surface=lambda t, x: np.where(t > 4.5, 0.003, 0.0))
     kept = (t < 3.0) | (t > 4.6)
     data = tuple(column[kept] for column in (t, angle, torque, *rest))
-    assert check(judged(tmp_path, data, bounds()), "stiffness").first is not None
-    assert check(judged(tmp_path, data, bounds("free")), "stiffness").first is None
+    assert check(judged(tmp_path, data, bounds()), "stiffness").time is not None
+    assert check(judged(tmp_path, data, bounds("free")), "stiffness").time is None
     every = tuple(column[::3] for column in pressed())
     found = judged(tmp_path, every, bounds())
     assert str(check(found, "stiffness").status) == "not judged"
@@ -131,9 +131,9 @@ def test_a_linear_log_is_turned(tmp_path):
     rows = zip(t, angle * 0.24, torque / 0.24, strict=True)
     text = "time_s,deflection_m,force_N\n" + "\n".join(f"{a},{b},{c}" for a, b, c in rows) + "\n"
     record = log(tmp_path, csv=text)
-    assert judge_sector(record, bounds())[0][0].first is None
+    assert judge_sector(record, bounds())[0][0].time is None
     record.columns["force"][:] *= 1.5
-    assert judge_sector(record, bounds())[0][0].first is not None
+    assert judge_sector(record, bounds())[0][0].time is not None
 
 
 def test_without_bounds_or_columns_the_stiffness_is_not_judged(tmp_path):

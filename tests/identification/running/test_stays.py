@@ -27,7 +27,7 @@ def test_dwell_times(tmp_path, rules, status, words):
     found = check(judged(log(tmp_path), with_switching(tmp_path, rules)), "dwell times")
     assert found.status == status
     if words is not None:
-        assert words in found.first.words
+        assert words in found.violation
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.identification.cli.identify import parse_arm
 from nrs_design.identification.errors import DataError
-from nrs_design.identification.tissue.trial import Preparation, read_preparation
+from nrs_design.identification.tissue.settings import Preparation, read_preparation
 from nrs_design.models.contact import Elastic
 from tests.tables import rows
 
@@ -21,7 +21,7 @@ def test_every_field_can_be_set():
 )
 def test_what_is_none_is_refused_with_what_to_write(entry, message):
     with pytest.raises(DesignError) as caught:
-        read_preparation((entry,))
+        read_preparation(entry.split())
     assert caught.value.message.startswith(message)
     assert caught.value.remedy
 

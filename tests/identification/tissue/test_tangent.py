@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.tissue.identify import identify_tissue
-from nrs_design.identification.tissue.pool import check_preload
+from nrs_design.identification.tissue.tangent import check_preload
 from nrs_design.identification.write_spec import merge_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley
 from nrs_design.spec import parse_spec, read_spec

@@ -104,10 +104,8 @@ def test_batches_have_any_shape(robot):
 
 
 def test_joint_angles_without_a_pose(robot):
-    with pytest.raises(PoseError, match="too far from the endoscope axis") as caught:
+    with pytest.raises(PoseError, match=r"middle leg is [0-9.]+ mm too far from the endoscope"):
         direct_kinematics(robot, (0.9, -0.9, -1.6))
-    assert caught.value.leg == "middle"
-    assert caught.value.excess > 0
 
 
 def test_elbow_inwards_is_the_mirrored_leg(robot):

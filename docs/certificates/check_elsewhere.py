@@ -24,6 +24,11 @@ def need(truth, words, error=ValueError):
         raise error(words)
 
 
+def ratio(text):
+    need(str(F(text)) == text and text[0] != "-", "a number is no ratio")
+    return F(text)
+
+
 def need_distinct(keys):
     need({*keys} <= names and len({*keys}) == len(keys), "it names something else, or one twice")
 
@@ -136,9 +141,9 @@ def steps_by_mode(leaving, rate):
     for a, b in product(names, names):
         if a == b or [a, b] not in rules.get("transitions", [[a, b]]):
             continue
-        stay = dict(stays).get(a, {"shortest": rules.get("dwell_time", 0)})
-        first = max(F(stay.get("shortest", 0)), not flow)
-        last = F(stay["longest"]) if a in leaving else first
+        stay = dict(stays).get(a, {"shortest": rules.get("dwell_time", "0")})
+        first = max(ratio(stay.get("shortest", "0")), not flow)
+        last = ratio(stay["longest"]) if a in leaving else first
         need(0 <= first <= last and (flow or first % 1 == last % 1 == 0), "a stay is odd")
         need(last <= 4096, "so long a stay", NotImplementedError)
         for reset in [r for r, way in zip(resets, ways, strict=True) if way == [a, b]] or [None]:
@@ -157,7 +162,7 @@ def steps_by_mode(leaving, rate):
 
 
 def check_graph(told):
-    stays, d, rate = told.get("stays"), told.get("degree", 1), F(told["rate"])
+    stays, d, rate = told.get("stays"), told.get("degree", 1), ratio(told["rate"])
     nodes = [(k, *map(node.get, ("place", "form"))) for k, node in enumerate(told["nodes"])]
     multipliers, added = told.get("multipliers", []), told.get("vanishing", [])
     values = {(m["fact"], m.get("target")): m["value"] for m in multipliers}
@@ -213,7 +218,7 @@ def check_no_common_quadratic(told):
 
 def check_constants_quadratic(told):
     """Where y = A x, 2 (x'F + y'G) (y - A x) is zero; with it V falls for every x and y."""
-    P, rate, sets = [form(Q, n) for Q in told["functions"]], F(told["rate"]), rules["fixed_ends"]
+    P, rate, sets = [form(Q, n) for Q in told["functions"]], ratio(told["rate"]), rules["fixed_ends"]
     need(uniform and not (required or rules.get("resets")), "contact, or resets, are not covered")
     need(sorted(k for ends in sets for k in {*ends}) == sorted(names), "the modes are not ends")
     need(rate > 0 and (flow or rate < 1), "the rate is none of decay")
@@ -245,6 +250,10 @@ for kind in unknown:
     print(f"{kind}: not checked here (this kind, turns, pulls or axes)", flush=True)
 rules = {} if o["switching"] == "arbitrary" else {**o["switching"]}
 required = contact.get("required")
+times = [rules.get("dwell_time", "0"), *(t for _, s in rules.get("stays", []) for t in s.values())]
+texts = [item["name"] for item in o.get("roundings", [])]
+texts += [item["id"] for item in [*o["assumptions"], contact.get("loss", {"id": ""})]]
+need([*map(ratio, times)] and {*map(type, texts)} == {str}, "a field is missing, or odd")
 count, every = len(o["modes"]), o["modes"] + contact.get("free", [])
 A = {m["name"]: table(m, k, k) for m in every for k in [len(m["numerators"])]}
 sizes, names = {*map(len, A.values())}, {*[*A][:count]}

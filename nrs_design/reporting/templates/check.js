@@ -14,7 +14,7 @@ const check = (() => {
   const multiplied = (left, right) => total([...left].flatMap(([a, x]) => [...right].map(([b, y]) => [sorted(a, b), x * y])));
   function ratio(text) {
     const [n, d = 1n] = /^\d+(\/\d+)?$/.test(text) ? text.split("/").map(BigInt) : [1n, 0n];
-    return need(d > 0n, "a number is no ratio"), [n / gcd(n, d), d / gcd(n, d)];
+    return need(gcd(n, d) === 1n && text === (text.includes("/") && d > 1n ? `${n}/${d}` : `${n}`), "a number is no ratio"), [n, d];
   }
   const distinct = (keys, names) => need(new Set(keys).size === keys.length && keys.every((key) => names.includes(key)), "it names something else, or one twice");
   // JSON whose numbers are integers of any length; texts are marked, so that none of them is taken for a number.
@@ -98,6 +98,8 @@ const check = (() => {
     need(S.A.map(({ N }) => N.length).reduce(larger) === n, "the modes have other states");
     need(!o.contact || (every.length > count && S.uniform && n > 1), "contact is lost, but nothing is free");
     need(S.A.slice(count).every(({ N, d }) => N.every((row, i) => row[n - 1] === (i === n - 1 && !S.flow ? d : 0n))), "free, but the deflection acts");
+    [S.rules.dwell_time ?? "0", ...(S.rules.stays ?? []).flatMap(([, stay]) => Object.values(stay))].forEach(ratio);
+    need([...(o.roundings ?? []).map(({ name }) => name), ...[...o.assumptions, contact.loss ?? { id: "" }].map(({ id }) => id)].every((text) => typeof text === "string"), "a name is missing, or odd");
     known(!contact.pulls, "an environment that could pull");
     known(!o.couplings, "axes that act on each other");
     return S;

@@ -27,6 +27,8 @@ IN_CI = (
     # That commands agree, checkers agree, and nothing that lies beside a spec is run.
     "tests/gating/test_agreement.py::test_all_commands_agree_on_any_design",
     *("tests/certificates/test_mutated.py", "tests/hostile/test_planted.py", "tests/oracle/"),
+    # A refutation that only a long word of steps gives, once lost unseen.
+    "tests/search/test_sampled_map.py",
 )
 
 

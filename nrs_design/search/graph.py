@@ -9,6 +9,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.structure import reachable
 from nrs_design.search.work import Allowance, Cost
@@ -26,13 +27,17 @@ PER_OPERATION = 3e-8
 CHUNK_ENTRIES = 2_000_000
 # Time between resets that grow by themselves, relative to the shortest other time.
 BRIEF = 1e-5
+# Moves a factor per step off zero, of which there is no logarithm.
+LEAST_FACTOR = 1e-12
+# Most steps beyond the shortest stay that are tried.
+LONGEST_STAY = 2000
 MAX_CYCLES = 120
 MAX_LENGTH = 64
 MAX_STEPS = 200_000
 # Number of sweeps over the times of a cycle of three legs or more.
 SWEEPS = 4
 # Number of fastest growing cycles that are returned.
-STARTS = 4
+STARTS = 8
 
 
 @dataclass(frozen=True)
@@ -47,10 +52,11 @@ class Jump:
 
 @dataclass(frozen=True)
 class Graph:
-    """Modes in continuous time, the jumps between them, and times to try in each mode."""
+    """Modes, the jumps between them, and times (s, or steps) to try in each mode."""
 
     matrices: Array  # Shape (m, n, n)
     # values, vectors, inverses: of the modes; a search needs many exponentials, not perfect ones.
+    # In discrete time the values are logarithms: whole times give powers.
     values: ComplexArray
     vectors: ComplexArray
     inverses: ComplexArray
@@ -67,19 +73,23 @@ class Graph:
         The modes may be scaled; they are those of the system itself if there are resets.
         """
         values, vectors = np.linalg.eig(matrices.astype(complex))
-        sizes = np.abs(values)
-        fastest = float(sizes.max()) or 1.0
-        slowest = max(float(sizes.min()), 1e-6 * fastest)
         # A defective mode is moved off its defect a little; the exact check is what counts.
         if (np.linalg.cond(vectors) > 1e10).any():
             rng = np.random.default_rng(0)
             noise = 1e-6 * np.abs(matrices).max() * rng.standard_normal(matrices.shape)
             values, vectors = np.linalg.eig(matrices + noise)
+        if discrete := system.time is Time.DISCRETE:
+            values = np.log(values + LEAST_FACTOR)
+        sizes = np.abs(values)
+        fastest = float(sizes.max()) or 1.0
+        slowest = max(float(sizes.min()), 1e-6 * fastest)
         # Beyond the shortest time, up to where the modes have decayed.
         beyond = np.concatenate([[0.0], np.geomspace(0.02 / fastest, 20 / slowest, TIMES)])
         if system.switching.resets:
             # Resets may grow by less than modes decay in any other of these times.
             beyond = np.insert(beyond, 1, BRIEF * beyond[1])
+        if discrete:
+            beyond = np.unique(np.rint(beyond.clip(max=LONGEST_STAY)))
         shortest, longest = stay_bounds(system)
         times = tuple(
             np.array([t for t in low + beyond if 0 < t < high] + [high] * int(high < np.inf))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.acceptance import Candidate, Candidates
 from nrs_design.search.branches import MOST_EDGES, StepGraph, best_words, turns_graph
@@ -47,11 +48,9 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
         few = tuple(compress(system.modes, kept))
         system = system.with_modes(few, system.states, system.switching)
         matrices = matrices[kept]
-    if system.time is Time.DISCRETE:
-        if (steps := StepGraph.of(system, matrices)) is not None:
-            for word, growth in best_words(steps, allowance.part(WORDS), 1.0):
-                yield from powers(system, *steps.sequence(word), growth ** len(word))
-        return NOTHING_GROWS
+    if (steps := StepGraph.of(system, matrices)) is not None:
+        for word, growth in best_words(steps, allowance.part(WORDS), 1.0):
+            yield from powers(system, *steps.sequence(word), growth ** len(word))
     graph = Graph.of(system, matrices)
     for cycle, times in _signals(system, graph, allowance):
         yield from _roundings(system, graph, cycle, times)
@@ -62,7 +61,8 @@ def search_period(family: Family) -> Candidates[GrowingSequence]:
 
 def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iterator[Signal]:
     """Yield signals that grow in floating point."""
-    words = stay_words(graph, allowance.part(WORDS))
+    is_continuous = system.time is Time.CONTINUOUS
+    words = stay_words(graph, allowance.part(WORDS)) if is_continuous else ()
     for cycle, start in chain(words, growing_cycles(graph, allowance)):
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
@@ -100,13 +100,13 @@ def _refined(graph: Graph, cycle: Cycle, times: Array) -> Array:
 def _roundings(
     system: SwitchedSystem, graph: Graph, cycle: Cycle, times: Array
 ) -> Iterator[Candidate[GrowingSequence]]:
-    """Round times to few digits, and keep them admissible."""
+    """Round times to few digits or whole steps, and keep them admissible."""
     names = [system.modes[mode].name for mode in graph.modes(cycle)]
     edges = tuple(graph.jumps[k].way for k in cycle)
-    has_choice = any(jump.way for jump in graph.jumps)
-    for bits in digits(FEWEST_BITS):
+    has_choice, stays = any(jump.way for jump in graph.jumps), system.stays()
+    for bits in digits(FEWEST_BITS) if system.time is Time.CONTINUOUS else (0,):
         steps = tuple(
-            (name, _admissible(system, name, _short(float(time), bits)))
+            (name, _admissible(stays[name], _short(float(time), bits)))
             for name, time in zip(names, times, strict=True)
         )
         floats = np.array([float(time) for _, time in steps])
@@ -114,8 +114,7 @@ def _roundings(
         yield from powers(system, steps, edges if has_choice else (), exp(min(growth, 700.0)))
 
 
-def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:
-    stay = system.stays()[mode]
+def _admissible(stay: Stay, time: Fraction) -> Fraction:
     time = max(time, stay.shortest)
     return time if stay.longest is None else min(time, stay.longest)
 
@@ -135,7 +134,9 @@ def powers(
 
 
 def _short(time: float, bits: int) -> Fraction:
-    """Round a time to so many significant bits."""
+    """Round a time to a number of significant bits; to at least one whole step for none."""
+    if not bits:
+        return max(Fraction(1), Fraction(round(time)))
     shift = bits - int(np.frexp(time)[1])
     return Fraction(round(Fraction(time) * Fraction(2) ** shift)) / Fraction(2) ** shift
 

@@ -218,7 +218,8 @@ def check_no_common_quadratic(told):
 
 def check_constants_quadratic(told):
     """Where y = A x, 2 (x'F + y'G) (y - A x) is zero; with it V falls for every x and y."""
-    P, rate, sets = [form(Q, n) for Q in told["functions"]], ratio(told["rate"]), rules["fixed_ends"]
+    P, rate = [form(Q, n) for Q in told["functions"]], ratio(told["rate"])
+    sets = rules["fixed_ends"]
     need(uniform and not (required or rules.get("resets")), "contact, or resets, are not covered")
     need(sorted(k for ends in sets for k in {*ends}) == sorted(names), "the modes are not ends")
     need(rate > 0 and (flow or rate < 1), "the rate is none of decay")

@@ -63,7 +63,7 @@ METHODS = {"average": Method.MIXTURE}
 # Every change to the others, which are larger, is left to the slow tests.
 SMALL = ("given", "discrete")
 ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for name in SPECS]
-# For each kind, the fields that may hold other numbers; a weaker rate is true of the same functions.
+# For each kind, the fields that may hold other numbers. A weaker rate is true, too.
 NUMBERS = {
     "block-triangular": {"rate", "blocks", "parts"},
     "graph": {"rate", "nodes", "denominator_log2", "vanishing", "multipliers"},

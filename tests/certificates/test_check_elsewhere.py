@@ -67,7 +67,7 @@ def decide(path, monkeypatch):
 
 def test_it_is_short_and_imports_nothing_of_ours():
     text = SCRIPT.read_text()
-    assert len(text.splitlines()) <= 265
+    assert len(text.splitlines()) <= 275
     imported = {
         (item.module if isinstance(item, ast.ImportFrom) else item.names[0].name)
         for item in ast.walk(ast.parse(text))

@@ -10,7 +10,7 @@ jump at a switch: with the motor, the state is the angle and ``w = theta' - Km K
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,7 +19,6 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import DesignError
 from nrs_design.models.contact.law import Element
-from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import (
     JointMotionLoop,
     LoadedMotionLoop,
@@ -37,47 +36,11 @@ class LoopMode:
     """The loop under one controller, in one set of contacts."""
 
     A: Array  # Shape (n, n), of ``z' = A z``
-    # angle, velocity, torque, reference: shape (n,). Rows that give these signals; the torque is
-    # that of the contacts on the robot.
-    angle: Array
+    # velocity, torque, reference: shape (n,). Rows that give these signals; the torque is that of
+    # the contacts on the robot.
     velocity: Array
     torque: Array
     reference: Array
-
-
-@dataclass(frozen=True, slots=True)
-class MotionStates:
-    """The motion loop ``x' = A x + B ref + E F``, with the angle ``C x``; F loads the motor."""
-
-    # A, B, E, C: shapes (n, n), (n,), (n,) and (n,).
-    A: Array
-    B: Array
-    E: Array
-    C: Array
-    signals: tuple[Signal, ...]  # Names and units of x
-
-    @classmethod
-    def build(cls, plant: Plant, design: ControllerDesign) -> MotionStates:
-        """Return the loop that the spec states, or the PD controller around the motor."""
-        motion: Realization | LoadedMotionLoop
-        if plant.given_loop is not None:
-            motion = realize(plant.given_loop)
-            signals = tuple(Signal(f"motion {i + 1}", "") for i in range(motion.order))
-        else:
-            motor = plant.actuator.gain, plant.actuator.time_constant
-            gains = design.motion.Kp, design.motion.Kd
-            motion = JointMotionLoop(*gains, *motor, plant.load_inertia).placed
-            signals = Signal("theta", "rad"), Signal("motion w", "rad/s")
-        n = motion.order
-        reference, load = coordinates(n + 2)[n:]
-        rates = np.array(motion.rates(reference, load), float)
-        C = np.array(motion.output(n), float)
-        return cls(rates[:, :n], rates[:, n], rates[:, n + 1], C, signals)
-
-    def at_rest(self, angle: float) -> Array:
-        """Return the state at rest at an angle in rad: 0 = A x + B ref, and C x = ref."""
-        rest = np.linalg.solve(self.A, -self.B)
-        return np.asarray(rest * angle / float(self.C @ rest))
 
 
 @dataclass(frozen=True)
@@ -90,9 +53,13 @@ class Loop:
     scenario: Scenario  # Surfaces, command and wanted torque
 
     @cached_property
-    def motion(self) -> MotionStates:
-        """The motion loop, whose states come first."""
-        return MotionStates.build(self.plant, self.design)
+    def motion(self) -> Realization | LoadedMotionLoop:
+        """The loop that the spec states, or the PD controller around the motor."""
+        if self.plant.given_loop is not None:
+            return realize(self.plant.given_loop)
+        actuator, gains = self.plant.actuator, (self.design.motion.Kp, self.design.motion.Kd)
+        motor = actuator.gain, actuator.time_constant
+        return JointMotionLoop(*gains, *motor, self.plant.load_inertia).placed
 
     @cached_property
     def laws(self) -> dict[str, CompliantLaw]:
@@ -101,14 +68,16 @@ class Loop:
 
     @cached_property
     def states(self) -> tuple[Signal, ...]:
-        """Names and units of all states."""
-        order = 0 if self.design.sensor.filter is None else self.design.sensor.filter.order
+        """Names and units of all states; those of the motion loop come first."""
+        motion: Sequence[Signal] = (Signal("theta", "rad"), Signal("motion w", "rad/s"))
+        if self.plant.given_loop is not None:
+            motion = [Signal(f"motion {i + 1}", "") for i in range(self.motion.order)]
         return (
-            *self.motion.signals,
+            *motion,
             Signal("commanded position", "rad"),
             Signal("offset", "rad"),
             *self._law_states,
-            *(Signal(f"filtered {i + 1}", "N*m") for i in range(order)),
+            *(Signal(name, "N*m") for name in self._lags),
             *(Signal(f"damper {j + 1}", "rad") for j in self._memories),
             Signal("hand", "rad/s"),
             Signal("slope", "rad/s^2"),
@@ -124,63 +93,63 @@ class Loop:
     def _law_states(self) -> tuple[Signal, ...]:
         """The states of all laws; laws that name a state alike share it."""
         texts = (text for law in self.laws.values() for text in law.states)
-        parted = (text.removesuffix("]").split(" [") for text in texts)
-        return tuple(dict.fromkeys(Signal(name, unit) for name, unit in parted))
+        pairs = (text.removesuffix("]").split(" [") for text in texts)
+        return tuple(dict.fromkeys(Signal(name, unit) for name, unit in pairs))
 
     @cached_property
-    def _bleeding(self) -> tuple[str, ...]:
-        """States of laws that stay in the reference while other controllers are active."""
-        each = (state_names(law.states) for law in self.laws.values() if law.bleeds)
-        return tuple(dict.fromkeys(name for names in each for name in names))
+    def _lags(self) -> tuple[str, ...]:
+        """Names of the states of the force filter; the last is the filtered force."""
+        order = 0 if self.design.sensor.filter is None else self.design.sensor.filter.order
+        return tuple(f"filtered {i + 1}" for i in range(order))
+
+    @cached_property
+    def elements(self) -> tuple[Element, ...]:
+        """Springs and dampers of every surface; a nonlinear one is refused."""
+        for surface in self.scenario.surfaces:
+            if surface.element is None:
+                raise DesignError(
+                    f"{surface.environment} is not linear: the exact engine does not simulate it",
+                    remedy="use --engine sampled",
+                    at=("environments", surface.environment),
+                )
+        return tuple(s.element for s in self.scenario.surfaces if s.element is not None)
 
     @cached_property
     def _memories(self) -> tuple[int, ...]:
         """Indices of surfaces with a damper that keeps its deflection."""
-        each = enumerate(self.scenario.surfaces)
-        return tuple(j for j, s in each if s.element is not None and np.isfinite(s.element.b))
+        return tuple(j for j, element in enumerate(self.elements) if np.isfinite(element.b))
+
+    @cached_property
+    def angle(self) -> Array:
+        """Row of the angle, which does not depend on the reference of the moment."""
+        return np.array(self.motion.output(len(self.states)), float)
 
     def row(self, name: str) -> Array:
         """Return the row that gives a state."""
         row: Array = np.eye(len(self.states))[self.index[name]]
         return row
 
-    def _motion_row(self, row: Array) -> Array:
-        """Return a row over all states from a row over those of the motion loop."""
-        return np.concatenate([row, np.zeros(len(self.states) - len(row))])
-
     def start(self) -> Array:
         """Return the state at rest at the start, before the first command."""
-        z = self._motion_row(self.motion.at_rest(self.scenario.start))
-        z[self.index["commanded position"]] = self.scenario.start
-        z[self.index["one"]] = 1.0
+        z, order, index = np.zeros(len(self.states)), self.motion.order, self.index
+        A = self.mode(self.scenario.control.start, ()).A
+        # The motion loop rests where 0 = A x + B reference, at the angle of the start.
+        equilibrium = np.linalg.solve(A[:order, :order], -A[:order, index["commanded position"]])
+        z[:order] = equilibrium * self.scenario.start / float(self.angle[:order] @ equilibrium)
+        z[index["commanded position"]] = self.scenario.start
+        z[index["one"]] = 1.0
         return z
 
-    def depth(self, j: int, mode: LoopMode) -> Array:
+    def depth(self, j: int) -> Array:
         """Return the row of the depth below a surface, less what its damper keeps, in rad."""
         surface = self.scenario.surfaces[j]
-        row = surface.sign * (mode.angle - surface.at * self.row("one"))
+        row = surface.sign * (self.angle - surface.at * self.row("one"))
         return row - self.row(f"damper {j + 1}") if j in self._memories else row
 
-    def _element(self, j: int) -> Element:
-        """Return the spring and the dampers of a surface; a nonlinear one is refused."""
-        surface = self.scenario.surfaces[j]
-        if surface.element is None:
-            raise DesignError(
-                f"{surface.environment} is not linear: the exact engine does not simulate it",
-                remedy="use --engine sampled",
-                at=("environments", surface.environment),
-            )
-        return surface.element
-
-    def is_damped(self, j: int) -> bool:
-        """Tell whether the push of a surface depends on the velocity of the moment."""
-        return self._element(j).c > 0
-
-    def push(self, j: int, mode: LoopMode) -> Array:
+    def push(self, j: int, velocity: Array) -> Array:
         """Return the row of the torque that a surface has while it is touched, towards it."""
-        element = self._element(j)
-        velocity = self.scenario.surfaces[j].sign * mode.velocity
-        return element.k * self.depth(j, mode) + element.c * velocity
+        element, sign = self.elements[j], self.scenario.surfaces[j].sign
+        return element.k * self.depth(j) + element.c * (sign * velocity)
 
     def signal(self, name: str, mode: LoopMode, direction: int) -> Array:
         """Return the row of a signal that the mode logic sees, named as in `Condition`.
@@ -191,93 +160,83 @@ class Loop:
             return direction * self.row("hand")
         if name == TORQUE:
             return direction * mode.torque
-        return self.depth(int(name.removeprefix(DEPTH)), mode)
+        return self.depth(int(name.removeprefix(DEPTH)))
 
-    def mode(self, controller: str, touched: Sequence[int]) -> LoopMode:
-        """Return the loop with a controller in force, touching surfaces of some indices."""
-        law, motion = self.laws[controller], self.motion
-        n, nothing = len(self.states), np.zeros(len(self.states))
-        # The angle does not depend on the reference of the moment, the velocity does.
-        still = LoopMode(np.zeros((n, n)), self._motion_row(motion.C), nothing, nothing, nothing)
-        reference = self.row("commanded position")
-        if law.commands == "velocity":
-            reference = reference + self.row("offset")
-        else:
-            if self._takes_at_once(law) and any(map(self.is_damped, touched)):
-                raise DesignError(
-                    f"{controller} corrects the position by a force that depends on the "
-                    "velocity: that is not modelled",
-                    remedy="let it touch elastic environments only, filter the force, or use "
-                    "--engine sampled",
-                    at=("controllers", controller),
-                )
-            springs = self._law_input(law, self._torque(still, touched))
-            reference = reference + self._respond(law, springs)[0]
-        if not law.bleeds:
-            reference = sum(map(self.row, self._bleeding), reference)
-        velocity = self._motion_row(motion.C @ motion.A) + float(motion.C @ motion.B) * reference
-        moving = replace(still, velocity=velocity, reference=reference)
-        closed = replace(moving, torque=self._torque(moving, touched))
-        self._fill(closed, law, touched)
-        return closed
+    def mode(self, controller: str, contacts: Sequence[int]) -> LoopMode:
+        """Return the loop with a controller in force, in contact with surfaces of some indices."""
+        law, motion, n = self.laws[controller], self.motion, len(self.states)
+        # Dampers push by the velocity, which follows from the reference: it takes springs alone.
+        reference = self._reference(law, self._torque(np.zeros(n), contacts))
+        velocity = np.array(motion.velocity([*np.zeros(n)], reference.tolist), float)
+        torque = self._torque(velocity, contacts)
+        if (self._reference(law, torque) != reference).any():
+            raise DesignError(
+                f"{controller} corrects the position by a force that depends on the "
+                "velocity: that is not modelled",
+                remedy="let it touch elastic environments only, filter the force, or use "
+                "--engine sampled",
+                at=("controllers", controller),
+            )
+        A = np.zeros((n, n))
+        A[: motion.order] = np.array(motion.rates(reference.tolist(), torque.tolist()), float)
+        for name, rate in self._rates(law, torque, contacts).items():
+            A[self.index[name]] = rate
+        return LoopMode(A, velocity, torque, reference)
 
-    def _takes_at_once(self, law: CompliantLaw) -> bool:
-        """Tell whether the command depends on the force of the moment."""
-        n = len(self.states)
-        none, some = (self._respond(law, np.full(n, force))[0] for force in (0.0, 1.0))
-        return self.design.sensor.filter is None and bool((none != some).any())
+    def _reference(self, law: CompliantLaw, torque: Array) -> Array:
+        """Return the row of the position that the motion loop follows."""
+        moved = self.row("offset")
+        if law.commands != "velocity":
+            moved = self._respond(law, torque)[0]
+        reference = self.row("commanded position") + moved
+        if law.bleeds:
+            return reference
+        # States of other laws stay in the reference, and decay there.
+        others = (name for one in self.laws.values() if one.bleeds for name in state_names(one))
+        return sum(map(self.row, dict.fromkeys(others)), reference)
 
-    def _torque(self, mode: LoopMode, touched: Sequence[int]) -> Array:
+    def _torque(self, velocity: Array, contacts: Sequence[int]) -> Array:
         """Return the row of the torque of the contacts on the robot."""
-        rows = (self.scenario.surfaces[j].sign * self.push(j, mode) for j in touched)
+        rows = (self.scenario.surfaces[j].sign * self.push(j, velocity) for j in contacts)
         return np.asarray(sum(rows, np.zeros(len(self.states))))
 
-    def _law_input(self, law: CompliantLaw, torque: Array) -> Array:
-        """Return the row of the force that the law gets."""
-        low_pass = self.design.sensor.filter
-        force = torque if low_pass is None else self.row(f"filtered {low_pass.order}")
-        if law.commands == "velocity":
-            return force + float(law.spring) * self.row("offset")
-        return force - self.scenario.wanted_torque * self.row("one")
-
-    def _respond(self, law: CompliantLaw, force: Array) -> tuple[Array, list[Array]]:
+    def _respond(self, law: CompliantLaw, torque: Array) -> tuple[Array, list[Array]]:
         """Return the row of the command of a law, and those of the rates of its states."""
-        states = [self.row(name).tolist() for name in state_names(law.states)]
+        force = self.row(self._lags[-1]) if self._lags else torque
+        if law.commands == "velocity":
+            force = force + float(law.spring) * self.row("offset")
+        else:
+            force = force - self.scenario.wanted_torque * self.row("one")
+        states = [self.row(name).tolist() for name in state_names(law)]
         command, rates = law.respond(force.tolist(), states)
         return np.array(command, float), [np.array(rate, float) for rate in rates]
 
-    def _fill(self, mode: LoopMode, law: CompliantLaw, touched: Sequence[int]) -> None:
-        """Write the rates of all states into the rows of A."""
-        index, A, motion = self.index, mode.A, self.motion
-        m = len(motion.C)
-        A[:m, :m] = motion.A
-        A[:m] += np.outer(motion.B, mode.reference) + np.outer(motion.E, mode.torque)
-        low_pass, before = self.design.sensor.filter, mode.torque
-        if low_pass is not None:
-            for name in (f"filtered {i + 1}" for i in range(low_pass.order)):
-                A[index[name]] = float(low_pass.pole) * (before - self.row(name))
-                before = self.row(name)
-        command, rates = self._respond(law, self._law_input(law, mode.torque))
-        idle = self.spec.idle_states
+    def _rates(self, law: CompliantLaw, torque: Array, contacts: Sequence[int]) -> dict[str, Array]:
+        """Return the rows of the rates of all states but those of the motion loop, by name."""
+        command, rates = self._respond(law, torque)
+        idle, low_pass = self.spec.idle_states, self.design.sensor.filter
         decay = 0.0 if idle is None else idle.decay.si
-        for name in ("offset", *(signal.name for signal in self._law_states)):
-            A[index[name]] = -decay * self.row(name)
-        for name, rate in zip(state_names(law.states), rates, strict=True):
-            A[index[name]] = rate
+        names = "offset", *(signal.name for signal in self._law_states)
+        rows = {name: -decay * self.row(name) for name in names}
+        rows |= dict(zip(state_names(law), rates, strict=True))
         if law.commands == "velocity":
-            A[index["offset"]] = command
+            rows["offset"] = command
         if not law.holds_hand:
-            A[index["commanded position"]] = self.row("hand")
+            rows["commanded position"] = self.row("hand")
+        source = torque
+        for name in self._lags:
+            assert low_pass is not None
+            rows[name] = float(low_pass.pole) * (source - self.row(name))
+            source = self.row(name)
         for j in self._memories:
-            element, own = self._element(j), self.row(f"damper {j + 1}")
-            pushed = element.k * self.depth(j, mode) if j in touched else 0.0
-            A[index[f"damper {j + 1}"]] = (pushed - element.h * own) / element.b
+            element, damper = self.elements[j], self.row(f"damper {j + 1}")
+            load = element.k * self.depth(j) if j in contacts else 0.0
+            rows[f"damper {j + 1}"] = (load - element.h * damper) / element.b
         profile = self.scenario.profile
-        A[index["hand"]] = self.row("slope")
         swing = self.row("hand") - profile.mean * self.row("one")
-        A[index["slope"]] = -(profile.omega**2) * swing
+        return rows | {"hand": self.row("slope"), "slope": -(profile.omega**2) * swing}
 
 
-def state_names(states: Sequence[str]) -> list[str]:
-    """Return the names of states of a law, which writes them with their units."""
-    return [text.split(" [")[0] for text in states]
+def state_names(law: CompliantLaw) -> list[str]:
+    """Return the names of the states of a law, which writes them with their units."""
+    return [text.split(" [")[0] for text in law.states]

@@ -25,18 +25,12 @@ INPUTS = (Signal("hand", "rad/s"),)
 CHATTER = 0.01
 # Steps of an engine after which a run is stopped, and steps between two reports of progress.
 MAX_STEPS, PROGRESS_STEPS = 5_000_000, 20_000
-# Steps of the exact engine that one event costs.
-EVENT_STEPS = 250
 
-# Effects that no run models, and effects that the exact engine leaves out.
+# Effects that no run models.
 LEFT_OUT = (
     "other axes, gravity, and play and elasticity of the gearhead",
-    "gain and time constant of the motor other than the nominal ones",
+    "values of the motor gain and time constant that differ from the nominal values",
 )
-LEFT_OUT_EXACTLY = (
-    "sampling, delay and rounding of the law, and the limit of the motor's command",
-)
-ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,14 +13,14 @@ class Tissue:
     """What is touched during a run."""
 
     surfaces: tuple[Surface, ...]  # Positions and laws
-    # Times in s at which `note` found a surface met (true) or lost, and its environment.
+    # Times in s at which `sample` found a surface met (true) or lost, and its environment.
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Begin free of contact, with all dampers at rest."""
         self.dampers = [0.0] * len(self.surfaces)
-        self.touched = [False] * len(self.surfaces)
-        self.noted = list(self.touched)
+        self.contacting = [False] * len(self.surfaces)
+        # Sign of the surface that was met last.
         self.direction = self.surfaces[0].sign if self.surfaces else 1
 
     @property
@@ -32,37 +32,40 @@ class Tissue:
         """Return the depth of an angle in rad below every surface."""
         return [surface.sign * (theta - surface.at) for surface in self.surfaces]
 
+    def _pushes(self, theta: float, omega: float) -> list[float]:
+        """Return the torque of every surface towards it: none of them pulls."""
+        triples = zip(self.surfaces, self.depths(theta), self.dampers, strict=True)
+        return [
+            max(0.0, surface.law.push(depth - damper, surface.sign * omega)) if depth > 0 else 0.0
+            for surface, depth, damper in triples
+        ]
+
     def torque(self, theta: float, omega: float) -> float:
-        """Return the torque of all surfaces on the robot in N m: none of them pulls.
+        """Return the torque of all surfaces on the robot in N m.
 
         At an angle in rad and a velocity in rad/s.
         """
-        total = 0.0
-        for j, (surface, depth) in enumerate(zip(self.surfaces, self.depths(theta), strict=True)):
-            push = 0.0
-            if depth > 0:
-                push = surface.law.push(depth - self.dampers[j], surface.sign * omega)
-            self.touched[j] = push > 0
-            if push > 0:
-                total += surface.sign * push
-        return total
+        pairs = zip(self.surfaces, self._pushes(theta, omega), strict=True)
+        return sum((surface.sign * push for surface, push in pairs), 0.0)
 
-    def note(self, time: float) -> None:
-        """Write down which surfaces have been met and lost since the last time."""
-        for surface, touched, noted in zip(self.surfaces, self.touched, self.noted, strict=True):
-            if touched != noted:
-                self.contacts.append((time, surface.environment, touched))
-                if touched:
-                    self.direction = surface.sign
-        self.noted = list(self.touched)
+    def sample(self, time: float, theta: float, omega: float) -> float:
+        """Return `torque`, and note the surfaces that have been met and lost since last time."""
+        contacting = [push > 0 for push in self._pushes(theta, omega)]
+        triples = zip(self.surfaces, contacting, self.contacting, strict=True)
+        for surface, is_met, was_met in triples:
+            if is_met != was_met:
+                self.contacts.append((time, surface.environment, is_met))
+                self.direction = surface.sign if is_met else self.direction
+        self.contacting = contacting
+        return self.torque(theta, omega)
 
-    def creep(self, before: list[float], after: list[float], time: float) -> None:
+    def creep(self, starts: list[float], ends: list[float], time: float) -> None:
         """Move the dampers while the depths, in rad, change evenly within a time in s."""
         for j, surface in enumerate(self.surfaces):
-            element, damper, depth = surface.element, self.dampers[j], (before[j] + after[j]) / 2
+            element, damper, depth = surface.element, self.dampers[j], (starts[j] + ends[j]) / 2
             if element is None or math.isinf(element.b):
                 continue
             k = element.k if depth > damper else 0.0
             if rate := (k + element.h) / element.b:
-                rest = k * depth / (k + element.h)
-                self.dampers[j] = rest + (damper - rest) * math.exp(-rate * time)
+                limit = k * depth / (k + element.h)
+                self.dampers[j] = limit + (damper - limit) * math.exp(-rate * time)

@@ -31,7 +31,6 @@ from nrs_design.proof.evidence.growing_sequence import decides
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.edits import Keys, node_at
 
@@ -46,6 +45,12 @@ _ENDS = {
     GoalStanding.MET: Status.MET,
     GoalStanding.NOT_JUDGED: Status.INCONCLUSIVE,
     GoalStanding.MISSED: Status.MISSED,
+}
+# Metric and unit of what a scenario may limit.
+_PEAKS = {
+    "torque": ("peak_torque", "N*m"),
+    "deflection": ("peak_depth", "rad"),
+    "velocity": ("peak_velocity", "rad/s"),
 }
 
 
@@ -244,8 +249,8 @@ class Examiner:
         scenario, run = simulated.scenario, simulated.run
         early = "" if run.stopped is None else f", stopped early ({run.stopped})"
         for quantity, limit in scenario.limits.items():
-            unit = UNITS[quantity]
-            peak = float(simulated.metrics[PEAKS[quantity]])
+            metric, unit = _PEAKS[quantity]
+            peak = float(simulated.metrics[metric])
             met = run.stopped is None and peak <= limit
             message = (
                 f"simulated: the largest {quantity} of scenario {scenario.name} is "

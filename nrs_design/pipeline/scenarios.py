@@ -98,9 +98,9 @@ def _simulate(
 ) -> Simulated:
     """Simulate a scenario, and measure the run."""
     from nrs_design.simulation.exact import simulate_exactly
+    from nrs_design.simulation.metrics import summarize
     from nrs_design.simulation.run import MAX_STEPS
     from nrs_design.simulation.sampled import simulate_sampled
-    from nrs_design.simulation.summary import summarize
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, scenario)
     given, most = (designed.plant, designed.design, scenario), wanted.max_steps or MAX_STEPS

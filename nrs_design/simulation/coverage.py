@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.build_control import by_logic
+from nrs_design.simulation.build_scenario import logic_control
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec
@@ -87,7 +87,7 @@ class Coverage:
         left = spec.switching.longest_dwell_time is not None
         changes = bool(control.switches or control.schedule)
         ruled = not spec.switching.is_arbitrary and (changes or left)
-        if ruled and (spec.mode_logic is None or control != by_logic(spec)):
+        if ruled and (spec.mode_logic is None or control != logic_control(spec)):
             yield "nothing makes the run keep the rules of switching"
 
     def _sampling(self) -> Iterator[str]:

@@ -31,28 +31,29 @@ def greedy_run(
     zero a round begins, or no deadline has been missed. The modes of the run are those of
     `all_modes`. A ValueError if the rules are too fine for this grid.
     """
-    each, every = [norms] if callable(norms) else list(norms), all_modes(system)
-    rules, advance = Rules.of(every, step), _advance(system, step)
-    of_action = rules.mode if system.clock is None else rules.target
+    key_norms, every = [norms] if callable(norms) else list(norms), all_modes(system)
+    rules, advance = Rules.create(every, step), _advance(system, step)
+    action_keys = (rules.mode if system.clock is None else rules.target) % len(key_norms)
     free = np.arange(len(every.modes)) >= len(system.modes)
-    states, taken, node = [initial], list[int](), 0
+    states, actions, node = [initial], list[int](), 0
     for _ in range(steps):
-        actions = rules.choices[node]
-        felt = free[rules.mode[actions]] == (free.any() and states[-1][-1] <= 0)
-        actions = np.unique(actions[felt])
-        jumped = rules.jumps[rules.jump[actions]] @ states[-1]
-        candidates, keys = advance(jumped, rules.mode[actions]), of_action[actions] % len(each)
-        values = np.empty(len(actions))
+        choices = rules.choices[node]
+        possible = free[rules.mode[choices]] == (free.any() and states[-1][-1] <= 0)
+        choices = np.unique(choices[possible])
+        jumped = rules.jumps[rules.jump[choices]] @ states[-1]
+        candidates, keys = advance(jumped, rules.mode[choices]), action_keys[choices]
+        values = np.empty(len(choices))
         for key in {*keys.tolist()}:
-            values[keys == key] = each[key](candidates[keys == key])
+            values[keys == key] = key_norms[key](candidates[keys == key])
         best = int(values.argmax())
-        taken.append(int(actions[best]))
+        actions.append(int(choices[best]))
         states.append(candidates[best])
-        node = int(rules.target[taken[-1]])
-    keys, unit = of_action[taken], 1.0 if system.time is Time.DISCRETE else step
-    first = keys[0] if system.clock is None else 0
+        node = int(rules.target[actions[-1]])
+    unit = 1.0 if system.time is Time.DISCRETE else step
+    turns = (rules.mode if system.clock is None else rules.target)[actions]
+    first = turns[0] if system.clock is None else 0
     instants = unit * np.arange(steps + 1.0)
-    return SwitchedRun(instants, np.array(states), rules.mode[taken], np.array([first, *keys]))
+    return SwitchedRun(instants, np.array(states), rules.mode[actions], np.array([first, *turns]))
 
 
 def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
@@ -78,10 +79,10 @@ def slowest(
 ) -> Array:
     """Return the state, among some, from which greedy runs of so many steps keep the most."""
 
-    def kept(x: Array) -> float:
+    def remainder(x: Array) -> float:
         return float(relative_norms(greedy_run(system, norms, x, step, steps), norms)[-1])
 
-    return max(directions, key=kept)
+    return max(directions, key=remainder)
 
 
 def _advance(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:

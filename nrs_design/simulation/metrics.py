@@ -8,17 +8,23 @@ Numbers of the thesis stand beside the equations.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.simulation.scenario import Array
+from nrs_design.simulation.run import Run
+from nrs_design.simulation.scenario import Array, Scenario
+from nrs_design.spec import InteractionDesignSpec
 
 # Smallest command in a displayed impedance, as a fraction of the largest one.
 SMALLEST_SHARE = 0.1
 # Last part of a run, which counts as settled.
 LAST_SHARE = 0.1
+# Shorter stays of force control have no steady state, in s.
+SETTLED = 0.2
 
 Mask = NDArray[np.bool_]
 
@@ -59,10 +65,8 @@ def displayed_impedance(command: Array, torque: Array) -> tuple[Array, Mask]:
     it is taken.
     """
     size = np.abs(command)
-    taken = (torque != 0) & (size > SMALLEST_SHARE * size.max(initial=0.0))
-    quotient = np.zeros_like(command)
-    quotient[taken] = np.abs(torque[taken]) / size[taken]
-    return quotient, taken
+    mask = (torque != 0) & (size > SMALLEST_SHARE * size.max(initial=0.0))
+    return np.divide(np.abs(torque), size, out=np.zeros_like(size), where=mask), mask
 
 
 def impedance_rmse(t: Array, command: Array, torque: Array, desired: float) -> float | None:
@@ -71,14 +75,14 @@ def impedance_rmse(t: Array, command: Array, torque: Array, desired: float) -> f
     ``sqrt(1/T int (|F|/|v_c| - Z_des)^2 dt)`` in N m s/rad, over the time in contact; the thesis
     measures 0.1234 to 0.5333 on the robot. None without contact under a command.
     """
-    quotient, taken = displayed_impedance(command, torque)
-    both = taken[1:] & taken[:-1]
-    widths = np.diff(t)[both]
+    quotient, mask = displayed_impedance(command, torque)
+    intervals = mask[1:] & mask[:-1]
+    widths = np.diff(t)[intervals]
     if not widths.sum() > 0:
         return None
     squares = (quotient - desired) ** 2
-    middle = (squares[1:] + squares[:-1])[both] / 2
-    return math.sqrt(float(np.sum(widths * middle) / widths.sum()))
+    means = (squares[1:] + squares[:-1])[intervals] / 2
+    return math.sqrt(float(np.sum(widths * means) / widths.sum()))
 
 
 def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ...]:
@@ -88,18 +92,18 @@ def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ..
     contact; a move that is turned round, or not over at the end, does not count. The torque of the
     contact has the sign of a command into the tissue.
     """
-    found: list[float] = []
+    durations: list[float] = []
     begin: float | None = None
     for time, v, F in zip(t.tolist(), command.tolist(), torque.tolist(), strict=True):
         if F == 0.0:
             if begin is not None:
-                found.append(time - begin)
+                durations.append(time - begin)
             begin = None
         elif v * F < 0 and begin is None:
             begin = time
         elif v * F > 0:
             begin = None
-    return tuple(found)
+    return tuple(durations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,15 +121,68 @@ def effort(t: Array, torque: Array, velocity: Array) -> Effort:
     return Effort(integral(t, np.abs(torque)), rms(t, torque), energy)
 
 
-def overshoot(y: Array, wanted: float) -> float:
-    """Return ``max(y/wanted) - 1``, at least 0, for a response to a wanted value of either sign."""
-    return max(0.0, float((y / wanted).max()) - 1)
+def overshoot(y: Array, target: float) -> float:
+    """Return ``max(y/target) - 1``, at least 0, for a response to a target of either sign."""
+    return max(0.0, float((y / target).max()) - 1)
 
 
-def steady_state_error(t: Array, y: Array, wanted: float) -> float:
-    """Return by which share of a wanted value the mean of the last tenth of a run misses it.
+def steady_state_error(t: Array, y: Array, target: float) -> float:
+    """Return by which share of a target the mean of the last tenth of a run misses it.
 
-    ``|1 - mean(y)/wanted|``; the thesis finds 2 to 12 % for proportional force control.
+    ``|1 - mean(y)/target|``; the thesis finds 2 to 12 % for proportional force control.
     """
     last = t >= t[-1] - LAST_SHARE * (t[-1] - t[0])
-    return abs(1 - mean(t[last], y[last]) / wanted)
+    return abs(1 - mean(t[last], y[last]) / target)
+
+
+def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict[str, Any]:
+    """Return the metrics of a run, in SI."""
+    response = run.response
+    t, torque, velocity = response.t, response["torque"], response["velocity"]
+    limit, desired = spec.limits.torque.si, spec.limits.torque.si / spec.limits.velocity.si
+    size, contact_time = np.abs(torque), time_above(t, (torque != 0).astype(float), 0.5)
+    in_contact = np.sqrt((t[-1] - t[0]) / contact_time) if contact_time else 0.0
+    return {
+        "duration": float(t[-1]),
+        "peak_torque": float(size.max()),
+        "torque_limit": limit,
+        "time_above_limit": time_above(t, size, limit),
+        "peak_depth": float(response["depth"].max()),
+        "peak_velocity": float(np.abs(velocity).max()),
+        # Agility of a robot that is led by hand (thesis 5.1.3, 7.2).
+        "mean_speed": mean(t, np.abs(velocity)),
+        "time_in_contact": time_above(t, size, 0.0),
+        "impedance_rmse": impedance_rmse(t, response["hand"], torque, desired),
+        "desired_impedance": desired,
+        "withdrawal_times": list(withdrawal_times(t, response["hand"], torque)),
+        "effort": asdict(effort(t, torque, velocity)),
+        "rms_torque_in_contact": float(rms(t, torque) * in_contact),
+        "force_control": _force_control(spec, scenario, run),
+        "switches": len(run.switches),
+        "shortest_stay": run.shortest_stay,
+        "chatter": run.chatter,
+        "contacts": sum(made for _, _, made in run.contacts),
+    }
+
+
+def _force_control(
+    spec: InteractionDesignSpec, scenario: Scenario, run: Run
+) -> list[dict[str, float | str]]:
+    """Return overshoot and steady-state error of every long stay in force control."""
+    response, target = run.response, scenario.wanted_torque
+    end = float(response.t[-1])
+    summaries: list[dict[str, float | str]] = []
+    for (start, name), (stop, _) in pairwise(
+        [(0.0, scenario.control.start), *run.switches, (end, "")]
+    ):
+        if not spec.controllers[name].holds_force or stop - start < SETTLED:
+            continue
+        mask = (response.t >= start) & (response.t < stop)
+        t, torque = response.t[mask], response["torque"][mask]
+        if target and len(t) > 1:
+            errors = {
+                "overshoot": overshoot(torque, target),
+                "steady_state_error": steady_state_error(t, torque, target),
+            }
+            summaries.append({"controller": name, "from": start, "to": stop, **errors})
+    return summaries

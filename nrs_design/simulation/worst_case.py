@@ -29,9 +29,9 @@ from nrs_design.simulation.norms import Array, Indices, deflected
 from nrs_design.simulation.rules import Rules, fitting_step
 from nrs_design.simulation.switched import all_modes, expm, fine_step, mode_eigenvalues
 
-# Steps that are chosen anew, of so many of the runs that come farthest while a choice is held, for
-# so many steps; most sweeps.
-_CHOSEN, _KEPT, _HELD, _SWEEPS = 600, 8, 3000, 15
+# The adversary improves the last _HORIZON steps of the _CANDIDATES runs that come farthest while a
+# choice is held, for at most _LONGEST_HOLD steps, in at most _SWEEPS sweeps.
+_HORIZON, _CANDIDATES, _LONGEST_HOLD, _SWEEPS = 600, 8, 3000, 15
 # Fractions of a run after which the new choices continue it.
 _CUTS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95)
 _NO_GAIN = 1e-5
@@ -44,24 +44,24 @@ DEFLECTION = "deflection"
 
 @dataclass(frozen=True, eq=False)
 class WorstRun:
-    """The worst run found for one quantity."""
+    """The worst run of an adversary for a quantity."""
 
     output: Output  # The quantity
     value: float  # Its size at the end of the run
     time: Array  # Shape (K + 1,). In s.
     # Shape (K + 1, n). From rest, or settled under disturbances that were held for long.
     states: Array
-    mode: Indices  # Shape (K,). Mode of each step; free modes come after those in contact.
+    mode: Indices  # Shape (K,). Mode of each step; indices of free modes follow the contact modes.
     disturbances: Array  # Shape (K, c). Held over each step, in the units of the channels.
 
 
 def worst_runs(
-    system: SwitchedSystem, outputs: Sequence[Output], touched: Sequence[Environment] = ()
+    system: SwitchedSystem, outputs: Sequence[Output], environments: Sequence[Environment] = ()
 ) -> tuple[WorstRun, ...]:
     """Let an adversary choose modes and disturbances from rest, for each of some outputs.
 
     He keeps the rules of switching, and holds his choices over a step. In continuous time, contact
-    is made and lost at the ends of steps only. The rows of the force are those of what is touched.
+    is made and lost at the ends of steps only. The rows of the force are those of the environments.
     A ValueError if modes are of different sizes or are ends of a constant parameter, if nothing
     disturbs, or if the rules are too fine for a grid.
     """
@@ -74,8 +74,7 @@ def worst_runs(
     if not any(any(map(any, column.numerators)) for c in system.channels for column in c.columns):
         raise ValueError("what disturbs the loop acts on none of its modes")
     games = _games(system)
-    each = ([game.worst(output, touched) for game in games] for output in outputs)
-    return tuple(max(found, key=lambda run: run.value) for found in each)
+    return tuple(_worst(games, output, environments) for output in outputs)
 
 
 def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
@@ -84,7 +83,7 @@ def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
     A bound holds however modes follow each other, and so he need keep no rules of switching.
     """
     free = replace(system, switching=ARBITRARY, clock=None, channels=tuple(bound.channels))
-    return max((game.worst(bound.output) for game in _games(free)), key=lambda run: run.value)
+    return _worst(_games(free), bound.output)
 
 
 def output_values(system: SwitchedSystem, output: Output, states: Array) -> Array:
@@ -111,8 +110,14 @@ def _games(system: SwitchedSystem) -> list[_Game]:
     """
     steps = [fine_step(system)]
     if system.time is Time.CONTINUOUS and system.contact is None:
-        steps.append(max(steps[0], _length(system) / _CHOSEN))
-    return [_Game.of(system, step) for step in dict.fromkeys(steps)]
+        steps.append(max(steps[0], _length(system) / _HORIZON))
+    return [_Game.create(system, step) for step in dict.fromkeys(steps)]
+
+
+def _worst(
+    games: Sequence[_Game], output: Output, environments: Sequence[Environment] = ()
+) -> WorstRun:
+    return max((game.worst(output, environments) for game in games), key=lambda run: run.value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +129,7 @@ class _Run:
     state: Array  # Shape (S, n). At first.
     node: Indices  # Shape (S,). Of `Rules`, at first.
 
-    def only(self, runs: Indices) -> _Run:
+    def select(self, runs: Indices) -> _Run:
         """Return some of the runs."""
         return _Run(self.actions[:, runs], self.shares[:, runs], self.state[runs], self.node[runs])
 
@@ -134,14 +139,14 @@ class _Aim:
     """What is to become large at the end of a run."""
 
     rows: Array  # Shape (r, n), over the state
-    allowed: NDArray[np.bool_]  # Shape (m, r). Which of them apply in each mode.
+    relevant: NDArray[np.bool_]  # Shape (m, r). Which of them apply in each mode.
     one_sided: bool  # Positive values alone count, and those without contact not at all
 
     def sizes(self, states: Array, modes: Indices) -> Array:
         """Return the size of every row at states (..., n) in modes (...); shape (..., r)."""
-        found = states @ self.rows.T
-        found = found if self.one_sided else np.abs(found)
-        return np.where(self.allowed[modes], found, -np.inf)
+        values = states @ self.rows.T
+        values = values if self.one_sided else np.abs(values)
+        return np.where(self.relevant[modes], values, -np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,13 +156,12 @@ class _Game:
     system: SwitchedSystem
     step: float
     rules: Rules
-    # Shape (m, n, n + c). Step of each mode in contact, from state and fractions of disturbances;
-    # and the same without contact, which is empty where contact is kept.
+    # Shape (m, n, n + c). Step of each contact mode, from state and fractions of disturbances.
     maps: Array
-    flights: Array
+    flights: Array  # The same without contact; empty where contact is kept
 
     @classmethod
-    def of(cls, system: SwitchedSystem, step: float) -> _Game:
+    def create(cls, system: SwitchedSystem, step: float) -> _Game:
         """Lay a system of modes of one size on a grid of time, in floating point."""
         step = fitting_step(system, step)
         parts = [np.array([mode.A.floats() for mode in all_modes(system).modes])]
@@ -171,28 +175,19 @@ class _Game:
             maps = expm(square)[:, : system.order]
         touching, flying = maps[: len(system.modes)], maps[len(system.modes) :]
         flights = flying[_free_counterparts(system)] if len(flying) else flying
-        return cls(system, step, Rules.of(system, step), touching, flights)
-
-    @property
-    def losable(self) -> bool:
-        """Whether contact may be lost."""
-        return self.system.contact is not None
-
-    @cached_property
-    def _pulls(self) -> Array | None:
-        """Forces of tissue that could pull, shape (q, n); contact is kept by a positive one."""
-        contact = self.system.contact
-        rows = () if contact is None else contact.pulls
-        return np.array([row.floats()[0] for row in rows]) if rows else None
+        return cls(system, step, Rules.create(system, step), touching, flights)
 
     def flies(self, states: Array) -> NDArray[np.bool_]:
         """Tell at which states, shape (..., n), nothing is touched; shape (...)."""
-        if not self.losable:
+        contact = self.system.contact
+        if contact is None:
             return np.zeros(states.shape[:-1], dtype=np.bool_)
-        lost = states[..., -1] <= 0
-        if self._pulls is not None:
-            lost |= (states @ self._pulls.T <= 0).all(axis=-1)
-        return np.asarray(lost)
+        separated = states[..., -1] <= 0
+        if contact.pulls:
+            # A positive force of tissue that could pull keeps contact.
+            forces = states @ np.array([row.floats()[0] for row in contact.pulls]).T
+            separated |= (forces <= 0).all(axis=-1)
+        return np.asarray(separated)
 
     def _play(self, run: _Run) -> Array:
         """Simulate runs; shape (K + 1, S, n), at a switch before the reset."""
@@ -206,36 +201,35 @@ class _Game:
         return np.array(states)
 
     @cached_property
-    def held(self) -> tuple[_Run, Array]:
+    def _steady(self) -> tuple[_Run, Array]:
         """The largest disturbances, held in either direction, in one mode for each run.
 
         Every mode of the game may follow every mode. They come after as many steps at rest as are
         chosen anew; where modes may follow each other freely, some begin where they settle.
         """
-        rules, steps = self.rules, self._chosen + int(min(_length(self.system) / self.step, _HELD))
-        begins = [
+        rules, length = self.rules, int(min(_length(self.system) / self.step, _LONGEST_HOLD))
+        steps = self._horizon + length
+        starts = [
             (mode, sign, state)
             for mode in range(len(self.maps))
             for sign in (1.0, -1.0)
             for state in (np.zeros(self.system.order), *self._settled(mode, sign))
         ]
-        wanted = np.array([mode for mode, _, _ in begins])
-        state = np.array([state for _, _, state in begins])
-        actions, node = [], np.zeros_like(wanted)
+        targets, signs, state = map(np.array, zip(*starts, strict=True))
+        actions, node = [], np.zeros_like(targets)
         for _ in range(steps):
             choices = rules.choices[node]
-            best = (rules.mode[choices] == wanted[:, None]).argmax(axis=1)
+            best = (rules.mode[choices] == targets[:, None]).argmax(axis=1)
             actions.append(choices[np.arange(len(node)), best])
             node = rules.target[actions[-1]]
-        shares = np.ones((steps, 1, self.maps.shape[2] - self.system.order))
-        shares = shares * np.array([sign for _, sign, _ in begins])[:, None]
-        shares[: self._chosen, ~state.any(axis=1)] = 0.0
-        run = _Run(np.array(actions), shares, state, np.zeros_like(wanted))
+        shares = np.ones((steps, 1, self.maps.shape[2] - self.system.order)) * signs[:, None]
+        shares[: self._horizon, ~state.any(axis=1)] = 0.0
+        run = _Run(np.array(actions), shares, state, np.zeros_like(targets))
         return run, self._play(run)
 
     @cached_property
-    def _chosen(self) -> int:
-        return int(np.clip(_length(self.system) / self.step, 100, _CHOSEN))
+    def _horizon(self) -> int:
+        return int(np.clip(_length(self.system) / self.step, 100, _HORIZON))
 
     def _settled(self, mode: int, sign: float) -> Iterator[Array]:
         """Yield the states that a mode settles at, in contact and on the way to the surface."""
@@ -247,43 +241,46 @@ class _Game:
             state = np.linalg.solve(np.eye(n) - A, b)
             if not self.flies(state):
                 yield state
-        if not self.losable:
+        if not len(self.flights):
             return
         # The deflection, which is the last state, moves on; the others do not feel it.
         A, b = self.flights[mode, :, :n], sign * self.flights[mode, :, n:].sum(axis=1)
         if _settles(A[:-1, :-1]) and not A[:-1, -1].any():
             state = np.append(np.linalg.solve(np.eye(n - 1) - A[:-1, :-1], b[:-1]), 0.0)
             if (way := float(A[-1] @ state + b[-1])) > 0:
-                state[-1] = -way * self._chosen
+                state[-1] = -way * self._horizon
                 yield state
 
-    def worst(self, output: Output, touched: Sequence[Environment] = ()) -> WorstRun:
+    def worst(self, output: Output, environments: Sequence[Environment]) -> WorstRun:
         """Improve the last steps before held runs are at their largest; return the worst."""
-        aim, (held, states), target = self._aim(output, touched), self.held, self.rules.target
-        sizes = self._sizes(aim, states[1:], self.rules.mode[held.actions])[self._chosen - 1 :]
-        kept = np.argsort(-sizes.max(axis=0), kind="stable")[:_KEPT]
-        first, rows = sizes[:, kept].argmax(axis=0), np.arange(self._chosen)[:, None]
-        node = np.where(first > 0, target[held.actions[first - 1, kept]], held.node[kept])
-        last = _Run(
-            held.actions[first + rows, kept],
-            held.shares[first + rows, kept],
-            states[first, kept],
-            node,
+        aim, (steady, states), horizon = (
+            self._aim(output, environments),
+            self._steady,
+            self._horizon,
         )
-        values, last = self._improved(aim, last)
-        best = int(values.argmax())
-        before, one = slice(first[best]), held.only(kept[[best]])
-        actions = np.concatenate([one.actions[before], last.actions[:, [best]]])
-        shares = np.concatenate([one.shares[before], last.shares[:, [best]]])
-        run = replace(one, actions=actions, shares=shares)
-        return self._shown(output, float(values[best]), run)
+        sizes = self._sizes(aim, states[1:], steady.actions)[horizon - 1 :]
+        best = np.argsort(-sizes.max(axis=0), kind="stable")[:_CANDIDATES]
+        first, rows = sizes[:, best].argmax(axis=0), np.arange(horizon)[:, None]
+        previous = self.rules.target[steady.actions[first - 1, best]]
+        last = _Run(
+            steady.actions[first + rows, best],
+            steady.shares[first + rows, best],
+            states[first, best],
+            np.where(first > 0, previous, steady.node[best]),
+        )
+        values, last = self._improve(aim, last)
+        k = int(values.argmax())
+        start, run = slice(first[k]), steady.select(best[[k]])
+        actions = np.concatenate([run.actions[start], last.actions[:, [k]]])
+        shares = np.concatenate([run.shares[start], last.shares[:, [k]]])
+        return self._record(output, float(values[k]), replace(run, actions=actions, shares=shares))
 
-    def _shown(self, output: Output, value: float, run: _Run) -> WorstRun:
+    def _record(self, output: Output, value: float, run: _Run) -> WorstRun:
         system = self.system
         if _is_free(system) and not run.state.any():
             # The run begins with the first disturbance.
-            begun = int(run.shares.any(axis=(1, 2)).argmax())
-            run = replace(run, actions=run.actions[begun:], shares=run.shares[begun:])
+            start = int(run.shares.any(axis=(1, 2)).argmax())
+            run = replace(run, actions=run.actions[start:], shares=run.shares[start:])
         states = self._play(run)[:, 0]
         mode = self.rules.mode[run.actions[:, 0]]
         flies = self.flies(states[:-1])
@@ -294,30 +291,30 @@ class _Game:
         time = np.asarray(unit * np.arange(len(states)), dtype=float)
         return WorstRun(output, value, time, states, mode, run.shares[:, 0] * bounds)
 
-    def _sizes(self, aim: _Aim, states: Array, modes: Indices) -> Array:
-        """Return the size of the aim at states, shape (..., n), in modes, shape (...)."""
-        size = aim.sizes(states, modes).max(axis=-1)
+    def _sizes(self, aim: _Aim, states: Array, actions: Indices) -> Array:
+        """Return the size of the aim at states, shape (..., n), after actions, shape (...)."""
+        size = aim.sizes(states, self.rules.mode[actions]).max(axis=-1)
         return np.where(self.flies(states), 0.0, size) if aim.one_sided else np.asarray(size)
 
-    def _improved(self, aim: _Aim, run: _Run) -> tuple[Array, _Run]:
+    def _improve(self, aim: _Aim, run: _Run) -> tuple[Array, _Run]:
         """Improve runs until a sweep gains nothing, or there have been enough."""
         states, runs = self._play(run), np.arange(len(run.node))
-        values = self._sizes(aim, states[-1], self.rules.mode[run.actions[-1]])
+        values = self._sizes(aim, states[-1], run.actions[-1])
         for _ in range(_SWEEPS):
-            fresh = self._answers(aim, run, states)
-            reached = self._play(fresh)
-            sizes = self._sizes(aim, reached[-1], self.rules.mode[fresh.actions[-1]])
-            picked = sizes.reshape(-1, len(runs)).argmax(axis=0) * len(runs) + runs
-            gained = sizes[picked] > values * (1 + _NO_GAIN)
-            if not gained.any():
+            fresh = self._best_responses(aim, run, states)
+            trajectories = self._play(fresh)
+            sizes = self._sizes(aim, trajectories[-1], fresh.actions[-1])
+            best = sizes.reshape(-1, len(runs)).argmax(axis=0) * len(runs) + runs
+            gains = sizes[best] > values * (1 + _NO_GAIN)
+            if not gains.any():
                 break
-            better = picked[gained]
-            run.actions[:, gained] = fresh.actions[:, better]
-            run.shares[:, gained] = fresh.shares[:, better]
-            states[:, gained], values[gained] = reached[:, better], sizes[better]
+            better = best[gains]
+            run.actions[:, gains] = fresh.actions[:, better]
+            run.shares[:, gains] = fresh.shares[:, better]
+            states[:, gains], values[gains] = trajectories[:, better], sizes[better]
         return values, run
 
-    def _answers(self, aim: _Aim, run: _Run, states: Array) -> _Run:
+    def _best_responses(self, aim: _Aim, run: _Run, states: Array) -> _Run:
         """Go backward along runs with the gradient at every node; follow it from each cut on."""
         rules, n, (steps, runs) = self.rules, self.system.order, run.actions.shape
         nodes, column = len(rules.choices), np.arange(runs)
@@ -328,24 +325,24 @@ class _Game:
         p, c = np.zeros((nodes, runs, n)), np.zeros((nodes, runs))
         modes = np.arange(len(self.maps))
         best = aim.sizes(states[-1], np.tile(modes[:, None], runs)).argmax(axis=2)
-        turned = 1.0 if aim.one_sided else np.where(states[-1] @ aim.rows.T < 0, -1.0, 1.0)
-        signed = aim.rows * np.broadcast_to(turned, (runs, len(aim.rows)))[:, :, None]
+        factors = 1.0 if aim.one_sided else np.where(states[-1] @ aim.rows.T < 0, -1.0, 1.0)
+        signed = aim.rows * np.broadcast_to(factors, (runs, len(aim.rows)))[:, :, None]
         p[rules.target] = signed[column, best[rules.mode]]
         for k in range(steps - 1, -1, -1):
             x = (rules.jumps[:, None] @ states[k][:, :, None])[rules.jump, :, :, 0]
-            pulled = p[rules.target] @ self.maps[rules.mode]
-            if self.losable:
-                lost = self.flies(x)[..., None]
-                pulled = np.where(lost, p[rules.target] @ self.flights[rules.mode], pulled)
-            added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
-            worth = (pulled[:, :, :n] * x).sum(axis=2) + added
+            gradients = p[rules.target] @ self.maps[rules.mode]
+            if len(self.flights):
+                flights = p[rules.target] @ self.flights[rules.mode]
+                gradients = np.where(self.flies(x)[..., None], flights, gradients)
+            constants = np.abs(gradients[:, :, n:]).sum(axis=2) + c[rules.target]
+            worth = (gradients[:, :, :n] * x).sum(axis=2) + constants
             action = rules.choices[np.arange(nodes)[:, None], worth[rules.choices].argmax(axis=1)]
-            own, c = pulled[action, column], added[action, column]
-            actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)
-            p = (own[:, :, None, :n] @ rules.jumps[rules.jump[action]])[:, :, 0]
-        cuts = (np.array(_CUTS if self.losable else _CUTS[:1]) * steps).astype(int)
+            gradient, c = gradients[action, column], constants[action, column]
+            actions[k], signs[k] = action, np.where(gradient[:, :, n:] < 0, -1, 1)
+            p = (gradient[:, :, None, :n] @ rules.jumps[rules.jump[action]])[:, :, 0]
+        cuts = (np.array(_CUTS if len(self.flights) else _CUTS[:1]) * steps).astype(int)
         column = np.tile(column, len(cuts))
-        fresh, first = run.only(column), np.repeat(cuts, runs)
+        fresh, first = run.select(column), np.repeat(cuts, runs)
         node = fresh.node
         for k in range(steps):
             new = k >= first
@@ -354,13 +351,13 @@ class _Game:
             node = rules.target[fresh.actions[k]]
         return fresh
 
-    def _aim(self, output: Output, touched: Sequence[Environment]) -> _Aim:
+    def _aim(self, output: Output, environments: Sequence[Environment]) -> _Aim:
         rows = np.array([row.floats()[0] for row in output.rows])
-        allowed = np.ones((len(self.maps), len(rows)), dtype=np.bool_)
+        relevant = np.ones((len(self.maps), len(rows)), dtype=np.bool_)
         # Under free switching, any mode may take over at the very end.
-        if output.name == "force" and touched and not _is_free(self.system):
-            allowed = _forces_by_mode(self.system, touched)
-        return _Aim(rows, allowed, pushes_only(self.system, output))
+        if output.name == "force" and environments and not _is_free(self.system):
+            relevant = _forces_by_mode(self.system, environments)
+        return _Aim(rows, relevant, pushes_only(self.system, output))
 
 
 def _forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:
@@ -405,4 +402,4 @@ def _length(system: SwitchedSystem) -> float:
     values = [v[np.abs(v) > 0] for v in mode_eigenvalues(system)]
     discrete = system.time is Time.DISCRETE
     rates = [-float((np.log(np.abs(v)) if discrete else v.real).max()) for v in values if len(v)]
-    return _FADED / min((rate for rate in rates if rate > 0), default=_FADED / _HELD)
+    return _FADED / min((rate for rate in rates if rate > 0), default=_FADED / _LONGEST_HOLD)

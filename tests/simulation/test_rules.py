@@ -47,7 +47,7 @@ def admissible(signal, step):
 
 
 def test_free_switching_has_one_node():
-    rules = Rules.of(FREE, 0.1)
+    rules = Rules.create(FREE, 0.1)
     assert rules.choices.tolist() == [[0, 1, 2]]
     assert len(paths(rules, 4)) == 3**4
 
@@ -58,12 +58,12 @@ def test_paths_are_the_admissible_signals():
     every = np.array(np.meshgrid(*[range(3)] * 8)).reshape(8, -1).T.tolist()
     wanted = {tuple(signal) for signal in every if admissible(signal, step)}
     assert 10 < len(wanted) < 3**8
-    assert paths(Rules.of(RULED, step), 8) == wanted
+    assert paths(Rules.create(RULED, step), 8) == wanted
 
 
 def test_a_stay_is_never_cut_short_on_a_grid_that_does_not_fit():
     step = 0.17
-    for signal in paths(Rules.of(RULED, step), 7):
+    for signal in paths(Rules.create(RULED, step), 7):
         assert admissible(signal, step)
 
 
@@ -80,4 +80,4 @@ def test_a_mode_that_nothing_may_follow_is_refused():
     switching = Switching(transitions=(), stays=(("a", Stay(Fraction(0), Fraction(1))),))
     stuck = replace(FREE, switching=switching)
     with pytest.raises(ValueError, match="nothing may follow"):
-        Rules.of(stuck, 0.5)
+        Rules.create(stuck, 0.5)

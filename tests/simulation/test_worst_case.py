@@ -177,7 +177,7 @@ def test_it_finds_what_full_enumeration_finds(name):
         channels=(Channel("push", "", Fraction(1), columns),),
         outputs=(Output("x", "", (matrix([WATCHED]),)),),
     )
-    assert found(system).value == pytest.approx(largest(Rules.of(system, 1.0)))
+    assert found(system).value == pytest.approx(largest(Rules.create(system, 1.0)))
 
 
 def test_what_cannot_be_searched_is_refused():

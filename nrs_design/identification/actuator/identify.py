@@ -18,11 +18,11 @@ from nrs_design.identification.actuator.fit import (
 from nrs_design.identification.datasets.records import (
     AbstractIdentification,
     SignalRecord,
+    doubt_sizes,
     doubt_step,
 )
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.statistics import WHITE, Estimate, span
-from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS
 
 UNDETERMINED = (
@@ -47,8 +47,12 @@ class ActuatorIdentification(AbstractIdentification[SignalRecord]):
     @cached_property
     def doubts(self) -> tuple[str, ...]:
         """Evidence against the fit."""
-        slips = _slips(self.fit, self.unit)
-        return (*doubt_step(self.step), *slips, *find_doubts(self.records, self.fit))
+        fit = self.fit
+        sizes = (
+            ("gain", "the gain", fit.gain.value, f"rad/s/{self.unit}"),
+            ("time_constant", "the time constant", fit.time_constant.value, "s"),
+        )
+        return (*doubt_step(self.step), *doubt_sizes(sizes), *find_doubts(self.records, fit))
 
     @property
     def unit(self) -> str:
@@ -109,19 +113,6 @@ def _check(records: Sequence[SignalRecord]) -> None:
             f"the commands are in {' and '.join(sorted(units))}",
             remedy="give records of one driver",
         )
-
-
-def _slips(fit: ActuatorFit, unit: str) -> tuple[str, ...]:
-    """Return questions about implausible sizes of the parameters."""
-    sizes = (
-        ("gain", fit.gain.value, f"rad/s/{unit}"),
-        ("time_constant", fit.time_constant.value, "s"),
-    )
-    return tuple(
-        f"the {name.replace('_', ' ')} is {value:.4g} {si}: {question}"
-        for name, value, si in sizes
-        if (question := doubt_size(name, value, si))
-    )
 
 
 def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:

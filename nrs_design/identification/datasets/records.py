@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Generic, TypeVar
@@ -163,6 +163,13 @@ def _uninterrupted(table: MeasurementTable) -> tuple[MeasurementTable, str]:
     values = {name: column[rows] for name, column in table.values.items()}
     values["time"] = values["time"] - values["time"][0]
     return replace(table, values=values, first_line=table.first_line + rows.start), pauses
+
+
+def doubt_sizes(sizes: Iterable[tuple[str, str, float, str]]) -> Iterator[str]:
+    """Doubt implausible values; each has a key of the table, a name, a value and its unit."""
+    for key, name, value, unit in sizes:
+        if question := doubt_size(key, value, unit, f"{value:.3g}"):
+            yield f"{name} is {value:.3g} {unit}: {question}"
 
 
 def doubt_step(step: float) -> Iterator[str]:

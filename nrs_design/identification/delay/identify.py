@@ -15,6 +15,7 @@ from nrs_design.identification.datasets.records import (
     FEWEST_ROWS,
     AbstractIdentification,
     SignalRecord,
+    doubt_sizes,
     doubt_step,
 )
 from nrs_design.identification.delay.fit import (
@@ -38,7 +39,6 @@ from nrs_design.identification.statistics import (
     joint_level,
     student_quantile,
 )
-from nrs_design.spec.plausible import doubt_size
 
 # Longest delay in the search, as a part of the record.
 _LONGEST = 0.1
@@ -472,9 +472,7 @@ def _doubts(found: DelayIdentification) -> Iterator[str]:
     record, fit, untold = found.record, found.chosen, found.untold
     command, output = record.names
     yield from doubt_step(record.step)
-    late = found.delay.value
-    if question := doubt_size("delay", late, "s"):
-        yield f"the delay is {late:.4g} s: {question}"
+    yield from doubt_sizes([("delay", "the delay", found.delay.value, "s")])
     early, error = -fit.samples, (found.interval.high - found.interval.low) / 2
     if untold is not None:
         yield f"the delay is {untold}"

@@ -7,7 +7,6 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from pathlib import Path
 from types import MappingProxyType
 
 from nrs_design.identification.errors import DataError
@@ -147,27 +146,12 @@ def find_columns(
     header: Sequence[str],
     layouts: Sequence[tuple[str, ...]],
     mapping: Mapping[str, str],
-    path: Path,
-    line: int | None,
-    optional: tuple[str, ...] = (),
+    optional: tuple[str, ...],
 ) -> tuple[tuple[str, ...], dict[str, Column]]:
     """Return the first layout that a header has in full, and its columns by quantity.
 
     What the user has mapped decides between layouts, then their order.
     """
-    try:
-        return _find_columns(header, layouts, mapping, optional)
-    except DataError as error:
-        error.path, error.line = path, line
-        raise
-
-
-def _find_columns(
-    header: Sequence[str],
-    layouts: Sequence[tuple[str, ...]],
-    mapping: Mapping[str, str],
-    optional: tuple[str, ...],
-) -> tuple[tuple[str, ...], dict[str, Column]]:
     for theirs, ours in mapping.items():
         _check_mapped(theirs, ours, header)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)

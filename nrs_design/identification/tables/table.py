@@ -69,18 +69,12 @@ def read_table(
     A layout is of quantities that belong together, see `columns.UNITS`; a mapping leads from a name
     in the file to ours; optional quantities are taken where they are there.
     """
-    if not isinstance(data, Path):
-        table = _read_arrays(data, layouts, mapping, optional)
-    elif data.is_dir():
-        raise DataError("is a folder", path=data, remedy="name files of data")
-    else:
-        try:
-            with open_regular(data) as file:
-                raw = file.read(_LARGEST_FILE + 1)
-        except OSError as error:
-            message = f"cannot be read ({error.strerror})"
-            raise DataError(message, path=data, remedy="check the name") from error
-        table = _read(raw, data, layouts, mapping, optional)
+    read = _read if isinstance(data, Path) else _read_arrays
+    try:
+        table = read(data, layouts, mapping, optional)
+    except DataError as error:
+        error.path = data if isinstance(data, Path) else _ARRAYS
+        raise
     # Refuse values that are not finite, or whose squares, or their squares, leave the floats.
     for quantity, values in table.values.items():
         column = table.columns[quantity]
@@ -93,11 +87,11 @@ def read_table(
 
 
 def _read_arrays(
-    data: Mapping[str, Any], layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
+    data: Any, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
     arrays = {str(name): np.asarray(data[name]) for name in data.keys()}  # noqa: SIM118
-    layout, columns = find_columns([*arrays], layouts, mapping, _ARRAYS, None, optional)
-    hashed, cells = hashlib.sha256(), _Cells(_ARRAYS)
+    layout, columns = find_columns([*arrays], layouts, mapping, optional)
+    hashed, cells = hashlib.sha256(), _Cells()
     values: dict[str, Array] = {}
     for quantity, column in columns.items():
         raw = arrays[column.name]
@@ -116,25 +110,26 @@ def _read_arrays(
 
 
 def _read(
-    raw: bytes, path: Path, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
+    path: Any, layouts: Layouts, mapping: Mapping[str, str], optional: tuple[str, ...]
 ) -> MeasurementTable:
-    if len(raw) > _LARGEST_FILE:
-        raise DataError("is larger than 512 MiB", path=path, remedy="record more slowly")
-    lines = _lines(raw, path)
+    raw = _read_bytes(path)
+    lines = _lines(raw)
     head = list(islice(lines, _PREAMBLE))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
-    at, separator, names = _read_header(head, path, example)
-    layout, columns = find_columns(names, layouts, mapping, path, at, optional)
-    cells, numbers = _Cells(path), array("d")
-    for line, text in _filled(enumerate(chain(head[at:], lines), at + 1), path):
+    at, separator, names = _read_header(head, example)
+    try:
+        layout, columns = find_columns(names, layouts, mapping, optional)
+    except DataError as error:
+        error.line = at
+        raise
+    cells, numbers = _Cells(), array("d")
+    for line, text in _filled(enumerate(chain(head[at:], lines), at + 1)):
         if line - at > MAX_ROWS:
-            message = f"has more than {MAX_ROWS} rows"
-            raise DataError(message, path=path, remedy="record more slowly")
-        row = _split(text, separator, path, line)
+            raise DataError(f"has more than {MAX_ROWS} rows", remedy="record more slowly")
+        row = _split(text, separator, line)
         if len(row) != len(names):
             raise DataError(
                 f"the row has {len(row)} values, the header {len(names)}",
-                path=path,
                 line=line,
                 remedy="complete the row; write numbers with a decimal point, not a comma",
             )
@@ -149,25 +144,24 @@ def _read(
     return MeasurementTable(source, layout, values, columns, tuple(cells.labels), at + 1)
 
 
-def _read_header(lines: Sequence[str], path: Path, example: str) -> tuple[int, str, list[str]]:
+def _read_header(lines: Sequence[str], example: str) -> tuple[int, str, list[str]]:
     """Return line, separator and names of the columns; the separator is a blank for any number.
 
     They are in the first line that is no comment, or in the comment right above bare numbers.
     """
     at = next((at for at, text in enumerate(lines) if text and text[0] not in _COMMENT), None)
     if at is None:
-        raise DataError("has no header line", path=path, remedy="name the columns in a line")
-    if _decimal(_split(lines[at], _separator(lines[at]), path, at + 1)[0]) is not None:
+        raise DataError("has no header line", remedy="name the columns in a line")
+    if _decimal(_split(lines[at], _separator(lines[at]), at + 1)[0]) is not None:
         if at == 0 or not lines[at - 1]:
             raise DataError(
                 "begins with numbers, not with the names of its columns",
-                path=path,
                 line=at + 1,
                 remedy=f"add a header such as {example}",
             )
         at -= 1
     text = lines[at].lstrip(f"{_COMMENT} ")
-    return at + 1, _separator(text), _split(text, _separator(text), path, at + 1)
+    return at + 1, _separator(text), _split(text, _separator(text), at + 1)
 
 
 def _separator(text: str) -> str:
@@ -175,12 +169,12 @@ def _separator(text: str) -> str:
     return max(",;\t", key=text.count) if set(text) & set(",;\t") else " "
 
 
-def _split(text: str, separator: str, path: Path, line: int) -> list[str]:
+def _split(text: str, separator: str, line: int) -> list[str]:
     try:
         row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [""])
     except csv.Error as error:
         message = f"the line is no CSV ({error})"
-        raise DataError(message, path=path, line=line, remedy="save the file as CSV") from None
+        raise DataError(message, line=line, remedy="save the file as CSV") from None
     return [cell.strip() for cell in row]
 
 
@@ -192,12 +186,25 @@ def _decimal(text: str) -> float | None:
         return None
 
 
-def _lines(raw: bytes, path: Path) -> Iterator[str]:
+def _read_bytes(path: Path) -> bytes:
+    if path.is_dir():
+        raise DataError("is a folder", remedy="name files of data")
+    try:
+        with open_regular(path) as file:
+            raw = file.read(_LARGEST_FILE + 1)
+    except OSError as error:
+        message = f"cannot be read ({error.strerror})"
+        raise DataError(message, remedy="check the name") from error
+    if len(raw) > _LARGEST_FILE:
+        raise DataError("is larger than 512 MiB", remedy="record more slowly")
+    return raw
+
+
+def _lines(raw: bytes) -> Iterator[str]:
     """Yield the lines of a text."""
     if b"\0" in raw:
         line = raw.count(b"\n", 0, raw.index(b"\0")) + 1
-        remedy = "save its columns as CSV"
-        raise DataError("is no text in UTF-8", path=path, line=line, remedy=remedy)
+        raise DataError("is no text in UTF-8", line=line, remedy="save its columns as CSV")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -206,14 +213,14 @@ def _lines(raw: bytes, path: Path) -> Iterator[str]:
     return (line.strip("\r\n ") for line in StringIO(text))
 
 
-def _filled(lines: Iterable[tuple[int, str]], path: Path) -> Iterator[tuple[int, str]]:
+def _filled(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
     """Yield the lines with a row; empty ones may be at the end only."""
     empty = 0
     for line, text in lines:
         if not text:
             empty = empty or line
         elif empty:
-            raise DataError("the row is empty", path=path, line=empty, remedy="remove it")
+            raise DataError("the row is empty", line=empty, remedy="remove it")
         else:
             yield line, text
 
@@ -222,7 +229,6 @@ def _filled(lines: Iterable[tuple[int, str]], path: Path) -> Iterator[tuple[int,
 class _Cells:
     """Turns cells into numbers."""
 
-    path: Path  # For errors
     # Words of a column of modes, numbered in the order of their first use.
     labels: dict[str, float] = field(default_factory=dict)
 
@@ -238,4 +244,4 @@ class _Cells:
             fault, remedy = "is missing", "end the record before it, or fill the gap"
         elif column.unit == "":
             fault, remedy = f"has more than {MAX_LABELS} words", "map another column"
-        raise DataError(f"{column.name} {fault}", path=self.path, line=line, remedy=remedy)
+        raise DataError(f"{column.name} {fault}", line=line, remedy=remedy)

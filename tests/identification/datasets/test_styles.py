@@ -94,8 +94,8 @@ def test_what_is_mapped_decides_between_layouts(tmp_path):
     layouts = [("time", "command", "angle"), ("time", "command", "velocity")]
     names = ["time_s", "command_rpm", "angle_deg", "w"]
     mapping = parse_mapping(["velocity_deg_s=w"])
-    assert find_columns(names, layouts, mapping, tmp_path, 1)[0] == layouts[1]
-    assert find_columns(names, layouts, {}, tmp_path, 1)[0] == layouts[0]
+    assert find_columns(names, layouts, mapping, ())[0] == layouts[1]
+    assert find_columns(names, layouts, {}, ())[0] == layouts[0]
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_what_is_mapped_decides_between_layouts(tmp_path):
 def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
     theirs = entry.partition("=")[2]
     with pytest.raises(DataError, match="says") as caught:
-        find_columns([theirs], [("time",)], parse_mapping([entry]), tmp_path, 1)
+        find_columns([theirs], [("time",)], parse_mapping([entry]), ())
     assert remedy in str(caught.value.remedy)
 
 
@@ -112,5 +112,5 @@ def test_a_mapped_column_keeps_the_unit_that_it_says(tmp_path, entry, remedy):
 def test_a_name_that_does_not_contradict_is_mapped(entry):
     ours, _, theirs = entry.partition("=")
     quantity = read_name(ours).quantity
-    layout, columns = find_columns([theirs], [(quantity,)], parse_mapping([entry]), "file", 1)
+    layout, columns = find_columns([theirs], [(quantity,)], parse_mapping([entry]), ())
     assert (layout, columns[quantity].name) == ((quantity,), theirs)

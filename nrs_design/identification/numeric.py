@@ -42,13 +42,13 @@ def smoothed(values: Array, count: int) -> Array:
     return np.convolve(padded, np.full(count, 1 / count), "valid")
 
 
-def bic(errors: Array, count: int, least: float = TINY) -> float:
+def bic(errors: Array, count: int, floor: float = TINY) -> float:
     """Return the Bayesian information criterion of a fit, up to a constant of its data.
 
     A power of the errors below the least one is rounding, and no better.
     """
     n = len(errors)
-    power = max(float(errors @ errors), least)
+    power = max(float(errors @ errors), floor)
     return n * float(np.log(power / n)) + count * float(np.log(n))
 
 

@@ -33,8 +33,8 @@ def resolution(readings: Array) -> float:
         4 * np.finfo(float).eps * float(np.abs(readings).max(initial=0.0)),
     )
     sizes = sizes[sizes > exact]
-    before, at, after = changes[:-2], changes[1:-1], changes[2:]
-    blips = np.abs(at - before)[np.abs(after - before) <= exact]
+    before, center, after = changes[:-2], changes[1:-1], changes[2:]
+    blips = np.abs(center - before)[np.abs(after - before) <= exact]
     blips = np.sort(blips[blips > exact])
     found = 0.0
     for step in np.unique(blips[:: -(-len(blips) // _CANDIDATES) or 1]).tolist():

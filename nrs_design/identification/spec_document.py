@@ -40,7 +40,7 @@ class SpecDocument:
 
         self._loaded = loaded
         # An axis of several is written as a spec of its own, without the comments of their file.
-        self._given = loaded.text if file_of(loaded.path) == loaded.path else _alone(loaded.root)
+        self._given = loaded.text if file_of(loaded.path) == loaded.path else _dump(loaded.root)
         _, indent, offset = load_yaml_guess_indent(self._given)
         self._yaml = YAML(typ="rt")
         self._yaml.preserve_quotes = True
@@ -49,7 +49,7 @@ class SpecDocument:
         self._yaml.indent(mapping=2, sequence=indent or 4, offset=2 if offset is None else offset)
         self.root: Any = self._yaml.load(self._given)
 
-    def put(self, node: Any, key: str, value: object) -> None:
+    def set_key(self, node: Any, key: str, value: object) -> None:
         """Set a key; a new one goes second to last, as the last one carries what comes after."""
         flow = _flow(value)
         if key in node or not len(node):
@@ -74,10 +74,10 @@ class SpecDocument:
         if "\r\n" in self._given:
             # Comments have kept theirs.
             text = text.replace("\r\n", "\n").replace("\n", "\r\n")
-        lost = [line for line in _comments(self._given) if line not in set(_comments(text))]
-        if lost:
+        removals = [line for line in _comments(self._given) if line not in set(_comments(text))]
+        if removals:
             raise SpecError(
-                f"the comment {lost[0]!r} would be lost",
+                f"the comment {removals[0]!r} would be lost",
                 path=self._loaded.path,
                 remedy="move it out of the value that is replaced",
             )
@@ -93,27 +93,27 @@ def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[
     )
     was = {name: old.get(name, "not there") for name in new}
     changed = (f"{n}: {was[n]} -> {w}" for n, w in new.items() if w != was[n])
-    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
-    return tuple(changed), tuple(lost)
+    removals = (f"{n}: {w}" for n, w in old.items() if n not in new)
+    return tuple(changed), tuple(removals)
 
 
-def _alone(root: Node) -> str:
+def _dump(root: Node) -> str:
     """Write a document as it was read."""
     from ruamel.yaml import YAML
 
     stream, writer = io.StringIO(), YAML()
     writer.width = 1 << 20
-    writer.dump(plain(to_data(root)), stream)
+    writer.dump(convert_data(to_data(root)), stream)
     return stream.getvalue()
 
 
-def plain(said: Data) -> Any:
+def convert_data(data: Data) -> Any:
     """Return what a document says as lists and dictionaries; whole numbers need no quotes."""
-    if isinstance(said, str):
-        return int(said) if said.isdecimal() else said
-    if isinstance(said, tuple):
-        return [plain(item) for item in said]
-    return {key: plain(item) for key, item in said.items()}
+    if isinstance(data, str):
+        return int(data) if data.isdecimal() else data
+    if isinstance(data, tuple):
+        return [convert_data(item) for item in data]
+    return {key: convert_data(item) for key, item in data.items()}
 
 
 def _flow(value: object) -> object:

@@ -34,14 +34,14 @@ class Estimate:
     high: float
 
     @classmethod
-    def from_log(cls, logarithm: float, half_width: float) -> Estimate:
+    def build_from_log(cls, logarithm: float, half_width: float) -> Estimate:
         """Return the interval that is symmetric in the logarithm."""
         if not half_width < _HUGE - abs(logarithm):
             return cls(math.exp(logarithm), 0.0, math.inf)
         ends = math.exp(logarithm - half_width), math.exp(logarithm + half_width)
         return cls(math.exp(logarithm), *ends)
 
-    def from_zero(self, half_width: float) -> Estimate:
+    def extend_to_zero(self, half_width: float) -> Estimate:
         """Return the interval that is symmetric in the value and ends at 0; half width over value.
 
         A parameter that is not told from 0 has no meaningful logarithm.
@@ -84,7 +84,7 @@ class Uncertainty:
         """Return the parameters with their intervals."""
         quantile = student_quantile(self.degrees, confidence)
         return tuple(
-            Estimate.from_log(float(log), quantile * float(error))
+            Estimate.build_from_log(float(log), quantile * float(error))
             for log, error in zip(logarithms, self.errors, strict=True)
         )
 
@@ -185,10 +185,10 @@ def _jackknife(J: Array, residuals: Array, edges: Rows, bread: Array) -> Array:
     for first, last in zip(edges, [*edges[1:], len(J)], strict=True):
         part = J[first:last]
         # The tiny addition keeps a batch that alone determines a parameter from dividing by zero.
-        without = (1 + 1e-9) * np.eye(p) - part.T @ part @ bread
-        shifts.append(bread @ np.linalg.solve(without, part.T @ residuals[first:last]))
-    moved = np.array(shifts)
-    return np.asarray(moved.T @ moved * (count - 1) / count)
+        complement = (1 + 1e-9) * np.eye(p) - part.T @ part @ bread
+        shifts.append(bread @ np.linalg.solve(complement, part.T @ residuals[first:last]))
+    deviations = np.array(shifts)
+    return np.asarray(deviations.T @ deviations * (count - 1) / count)
 
 
 def _propagated(bread: Array, scatter: Array) -> Array:
@@ -229,12 +229,12 @@ def spread_ranges(
         factor = student_quantile(n - 1, level) * math.sqrt(1 + 1 / n)
     means, scatter = logarithms.mean(axis=0), logarithms.std(axis=0, ddof=1)
     halves = zip(means.tolist(), (factor * scatter).tolist(), strict=True)
-    return hulls([Estimate.from_log(mean, half) for mean, half in halves], single)
+    return hulls([Estimate.build_from_log(mean, half) for mean, half in halves], single)
 
 
 def hulls(pooled: Sequence[Estimate], single: Sequence[Sequence[Estimate]]) -> tuple[Estimate, ...]:
     """Widen the interval of each parameter to those of single records."""
     return tuple(
-        Estimate(own.value, min(e.low for e in (own, *row)), max(e.high for e in (own, *row)))
-        for own, *row in zip(pooled, *single, strict=True)
+        Estimate(mean.value, min(e.low for e in (mean, *row)), max(e.high for e in (mean, *row)))
+        for mean, *row in zip(pooled, *single, strict=True)
     )

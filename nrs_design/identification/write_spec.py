@@ -48,7 +48,7 @@ _POWER_KEYS = ("exponent", "about", "preload")
 
 
 def merge_tissue(
-    loaded: LoadedSpec, found: TissueIdentification, environment: str | None, arm: str | None
+    loaded: LoadedSpec, result: TissueIdentification, environment: str | None, arm: str | None
 ) -> Merged:
     """Return a spec with the chosen law in one of its environments.
 
@@ -56,7 +56,7 @@ def merge_tissue(
     need a lever arm such as ``0.24 m``, by default the one of the spec. A range that gets narrower
     by few records, or by much, is a doubt.
     """
-    model, tangent, rotational = found.chosen, found.tangent, found.rotational
+    model, tangent, rotational = result.model, result.tangent, result.rotational
     law, ranges = (model.law, model.ranges) if tangent is None else (tangent.law, tangent.ranges)
     name = _place(loaded, environment)
     target = check_interaction(loaded).environments[name]
@@ -78,7 +78,7 @@ def merge_tissue(
             remedy="choose a simpler law with --model, or record again as the message says",
         )
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["environments"][name], found.sources)
+    writer = _Writer(document, document.root["environments"][name], result.sources)
     narrow = writer.narrowed(target.ranges, dict(zip(law.keys, ranges, strict=True)))
     power = tangent is not None and has_place(tangent)
     if tangent is not None and power:
@@ -93,14 +93,14 @@ def merge_tissue(
     if rotational or arm is not None:
         values["lever_arm"] = arm
     values["range_covers"] = model.coverage
-    writer.put("model", HuntCrossley.name if power else law.name)
+    writer.set_key("model", HuntCrossley.name if power else law.name)
     for key, value in values.items():
-        writer.put(key, value)
+        writer.set_key(key, value)
     known = (key for other in LINEAR_LAWS.values() for key in other.keys)
     for key in {*known, *_POWER_KEYS, "linearized_about"} - values.keys():
-        writer.put(key, None)
-    doubts = writer.put_origin((*found.caveats, *narrow))
-    writer.put("range_id", writer.identified().environments[name].values_id())
+        writer.set_key(key, None)
+    doubts = writer.put_origin((*result.caveats, *narrow))
+    writer.set_key("range_id", writer.identified().environments[name].values_id())
     return writer.merged(doubts)
 
 
@@ -110,50 +110,50 @@ def _power_values(tangent: Tangent, length: str) -> dict[str, object]:
     nominal = min(max(round(Decimal(tangent.power[2].value), 3), low), high)
     return {
         "exponent": {"nominal": str(nominal), "range": [str(low), str(high)]},
-        "about": f"{tangent.about!r} {length}",
+        "about": f"{tangent.operating_point!r} {length}",
         "preload": [f"{end!r} {length}" for end in (tangent.low, tangent.high)],
     }
 
 
-def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> Merged:
+def merge_actuator(loaded: LoadedSpec, result: ActuatorIdentification) -> Merged:
     """Return a spec with the identified actuator and its intervals.
 
     Where the proof can cover ranges of the actuator, these are written; else the intervals stand
     beside the nominal values, for the record.
     """
-    spec = check_actuator(loaded, found.unit)
+    spec = check_actuator(loaded, result.unit)
     assert spec.actuator is not None, "as has been checked"
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["actuator"], found.sources)
-    if found.unit != spec.actuator.command:
-        writer.put("command", found.unit)
+    writer = _Writer(document, document.root["actuator"], result.sources)
+    if result.unit != spec.actuator.command:
+        writer.set_key("command", result.unit)
     covered = spec.combines(MOTOR_RANGE)
-    ranges = found.fit.ranges if covered else (found.fit.gain, found.fit.time_constant)
-    by_name = dict(zip(("gain", "time_constant"), ranges, strict=True))
-    units = f"rad/s/{found.unit}", "s"
+    ranges = result.fit.ranges if covered else (result.fit.gain, result.fit.time_constant)
+    ranges_by_name = dict(zip(("gain", "time_constant"), ranges, strict=True))
+    units = f"rad/s/{result.unit}", "s"
     narrow: Sequence[str] = ()
     if covered:
-        declared = {name: getattr(spec.actuator, name) for name in by_name}
-        narrow = writer.narrowed(declared, by_name)
-    written = {
+        declared_ranges = {name: getattr(spec.actuator, name) for name in ranges_by_name}
+        narrow = writer.narrowed(declared_ranges, ranges_by_name)
+    texts = {
         name: _positive_range(e, unit, name)
-        for (name, e), unit in zip(by_name.items(), units, strict=True)
+        for (name, e), unit in zip(ranges_by_name.items(), units, strict=True)
     }
-    for name, value in written.items():
-        writer.put(name, value if covered else value["nominal"])
-    intervals = {name: value["range"] for name, value in written.items()}
-    writer.put("intervals", None if covered else intervals)
-    writer.put("range_covers", "confidence" if covered else None)
-    late = found.clear_dead_time if spec.takes_dead_time else None
-    writer.put("dead_time", late and _outwards(late, "s")["range"])
-    doubts = writer.put_origin((*(found.doubts if late else found.caveats), *narrow))
+    for name, value in texts.items():
+        writer.set_key(name, value if covered else value["nominal"])
+    intervals = {name: value["range"] for name, value in texts.items()}
+    writer.set_key("intervals", None if covered else intervals)
+    writer.set_key("range_covers", "confidence" if covered else None)
+    dead_time = result.clear_dead_time if spec.takes_dead_time else None
+    writer.set_key("dead_time", dead_time and _outwards(dead_time, "s")["range"])
+    doubts = writer.put_origin((*(result.doubts if dead_time else result.caveats), *narrow))
     rewritten = writer.identified().actuator
     assert rewritten is not None
-    writer.put("range_id", rewritten.values_id() if covered else None)
+    writer.set_key("range_id", rewritten.values_id() if covered else None)
     return writer.merged(doubts)
 
 
-def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> Merged:
+def merge_sampling(loaded: LoadedSpec, result: DelayIdentification) -> Merged:
     """Return a spec of a sampled loop with the age of its force sample.
 
     A record that shows dynamics and no mere delay is a `DataError`.
@@ -165,24 +165,24 @@ def merge_sampling(loaded: LoadedSpec, found: DelayIdentification) -> Merged:
             path=loaded.path,
             remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
         )
-    command, output = found.record.names
-    if found.is_lag:
+    command, output = result.record.names
+    if result.is_lag:
         raise DataError(
-            f"{output} follows {command} by {found.chosen.follower.name}: that is more than the "
+            f"{output} follows {command} by {result.fit.follower.name}: that is more than the "
             "age of a sample",
             remedy="name the force as measured by --command and the force that the law used by "
             "--measured; dynamics between them belong into the model",
         )
-    low, high = found.periods(spec.sampling.outer)
+    low, high = result.periods(spec.sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
             remedy="record longer or livelier forces, or sample with a longer period",
         )
     document = SpecDocument(loaded)
-    writer = _Writer(document, document.root["sampling"], found.sources)
-    writer.put("delay", low if low == high else [low, high])
-    return writer.merged(writer.put_origin(found.caveats))
+    writer = _Writer(document, document.root["sampling"], result.sources)
+    writer.set_key("delay", low if low == high else [low, high])
+    return writer.merged(writer.put_origin(result.caveats))
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +193,7 @@ class _Writer:
     node: Any  # The part
     sources: Sequence[Source]  # The records
 
-    def put(self, key: str, value: object) -> None:
+    def set_key(self, key: str, value: object) -> None:
         """Set a key, or remove it for None; comments within a range stay."""
         old = self.node.get(key)
         if value is None:
@@ -202,10 +202,10 @@ class _Writer:
             if isinstance(old.get("range"), list):
                 old["range"][:] = value["range"]
             else:
-                self.document.put(old, "range", value["range"])
+                self.document.set_key(old, "range", value["range"])
             old["nominal"] = value["nominal"]
         else:
-            self.document.put(self.node, key, value)
+            self.document.set_key(self.node, key, value)
 
     def put_origin(self, caveats: Sequence[str]) -> Sequence[str]:
         """Note files and doubts, and return the doubts; a reason for others does not hold."""
@@ -221,15 +221,15 @@ class _Writer:
         texts = [_one_line(caveat) for caveat in caveats]
         if [dict(item) for item in self.node.get("provenance", ())] == provenance:
             # The range that was declared before the same records is not there any more.
-            kept = [old for old in before if old.endswith(NARROWER)]
-            texts, caveats = [*texts, *kept], [*caveats, *kept]
+            old_doubts = [old for old in before if old.endswith(NARROWER)]
+            texts, caveats = [*texts, *old_doubts], [*caveats, *old_doubts]
         if len(texts) > MAX_DOUBTS:
             count = len(texts) - MAX_DOUBTS + 1
             texts = [*texts[: MAX_DOUBTS - 1], f"and {count} more"]
-        self.put("provenance", provenance)
+        self.set_key("provenance", provenance)
         if texts != before:
-            self.put("accept_doubt", None)
-        self.put("doubts", texts or None)
+            self.set_key("accept_doubt", None)
+        self.set_key("doubts", texts or None)
         return caveats
 
     def merged(self, doubts: Sequence[str]) -> Merged:
@@ -237,15 +237,15 @@ class _Writer:
         return Merged(self.document.text(), tuple(doubts), "accept_doubt" in self.node)
 
     def narrowed(
-        self, declared: Mapping[str, RangedQuantity], found: Mapping[str, Estimate]
+        self, declared_ranges: Mapping[str, RangedQuantity], result: Mapping[str, Estimate]
     ) -> list[str]:
         """Return doubts about relative ranges that get narrower by few records or by much."""
         records = len({source.sha256 for source in self.sources})
         texts = []
-        for key in sorted(found.keys() & declared.keys()):
-            low, high = (end.si for end in declared[key].range)
-            before = (high - low) / declared[key].nominal.si
-            after = (found[key].high - found[key].low) / found[key].value
+        for key in sorted(result.keys() & declared_ranges.keys()):
+            low, high = (end.si for end in declared_ranges[key].range)
+            before = (high - low) / declared_ranges[key].nominal.si
+            after = (result[key].high - result[key].low) / result[key].value
             if ROUNDING_SLACK * after < before and (
                 records < FEW_RECORDS or MUCH_NARROWER * after <= before
             ):
@@ -255,10 +255,10 @@ class _Writer:
 
     def identified(self) -> InteractionDesignSpec:
         """Return the new spec, in which the part has no identity of its range yet."""
-        self.put("range_id", None)
-        written = parse_spec(self.document.text())
-        assert isinstance(written, InteractionDesignSpec)
-        return written
+        self.set_key("range_id", None)
+        new_spec = parse_spec(self.document.text())
+        assert isinstance(new_spec, InteractionDesignSpec)
+        return new_spec
 
 
 def law_to_write(loaded: LoadedSpec, environment: str | None, requested: str | None) -> str:
@@ -286,12 +286,12 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
             path=loaded.path,
             remedy="leave --write out, and copy the time constant into velocity_interface",
         )
-    written = {
+    quantities = {
         "derivative_gain": spec.motion_loop.derivative_gain,
         "the largest command": spec.limits.command,
         "friction": None if spec.disturbances is None else spec.disturbances.friction,
     }
-    for name, quantity in written.items():
+    for name, quantity in quantities.items():
         if quantity is not None and spec.actuator.command != unit:
             raise SpecError(
                 f"the records are about commands in {unit}, and {name} is {quantity.text}",

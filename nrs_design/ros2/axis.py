@@ -25,7 +25,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.ros2.law import AdmittanceLaw, Axis, Range
 
-ONE = Fraction(1)
+UNIT = Fraction(1)
 # Digits in base two behind the point of a square root that is not rational.
 BITS = 80
 
@@ -45,7 +45,7 @@ class ControllerContext:
     period: Fraction = Fraction(0)  # Period of the control loop in s; each controller has its own
 
     @property
-    def kept(self) -> Interval:
+    def lag_decay(self) -> Interval:
         """Enclosure of E, the share of the distance to the command that remains after a period."""
         shares = [
             exponential_between(-self.period / lag) if lag else (Fraction(0), Fraction(0))
@@ -53,7 +53,7 @@ class ControllerContext:
         ]
         return Interval(shares[0][0], shares[0][0], shares[1][1])
 
-    def of(self, axis: Axis) -> Range | None:
+    def find_stiffness(self, axis: Axis) -> Range | None:
         """Return the range of stiffness for an axis; None without a range."""
         if not axis.selected:
             return Fraction(0), Fraction(0)
@@ -66,8 +66,8 @@ def square_root_between(value: Fraction) -> Interval:
     root = Fraction(isqrt(p * q), q)
     if root * root == value:
         return Interval.point(root)
-    below = Fraction(isqrt(p * q << 2 * BITS), q << BITS)
-    return Interval(below, below, below + Fraction(1, q << BITS))
+    lower = Fraction(isqrt(p * q << 2 * BITS), q << BITS)
+    return Interval(lower, lower, lower + Fraction(1, q << BITS))
 
 
 def axis_damping(axis: Axis) -> Interval:
@@ -88,7 +88,7 @@ class _Frame:
     axis: Axis
     joint_damping: Fraction
     c: Fraction
-    around: ControllerContext
+    context: ControllerContext
 
     @property
     def smooths(self) -> bool:
@@ -98,7 +98,7 @@ class _Frame:
     @property
     def lags(self) -> bool:
         """Whether the robot follows with a lag."""
-        return self.around.lag[1] > 0
+        return self.context.lag[1] > 0
 
     @property
     def moves(self) -> bool:
@@ -112,46 +112,52 @@ class _Frame:
         speed = f"v [{place}/s]"
         if not self.moves:
             return (speed,)
-        behind = (f"e [{place}]",) if self.lags else ()
-        steps = (f"step {i} before [{place}]" for i in range(self.around.delays[1]))
+        lag_state = (f"e [{place}]",) if self.lags else ()
+        steps = (f"step {i} before [{place}]" for i in range(self.context.delays[1]))
         smoothed = (f"f [{force}]",) if self.smooths else ()
-        return (speed, *behind, *steps, *smoothed, f"delta [{place}]")
+        return (speed, *lag_state, *steps, *smoothed, f"delta [{place}]")
 
     def rows(self, age: int, values: Mapping[str, Fraction]) -> list[LinearForm]:
         """Return the map of one period, for an age in periods, and values of k, D and E."""
-        T, E, oldest = self.around.period, values["E"], self.around.delays[1]
+        T, E, oldest = self.context.period, values["E"], self.context.delays[1]
         unit = coordinates(len(self.states))
         v, delta = unit[0], unit[-1]
         slowed = combine((1 - T * (values["D"] / self.axis.mass + self.joint_damping), v))
         if not self.moves:
             return [slowed]
-        behind = unit[1] if self.lags else zero(len(unit))
+        lag_state = unit[1] if self.lags else zero(len(unit))
         steps = unit[1 + self.lags :][:oldest]
-        measured = combine((ONE, delta), *((ONE, step) for step in steps[age:]))
+        measured = combine((UNIT, delta), *((UNIT, step) for step in steps[age:]))
         force, smoothed = combine((-values["k"] * self.c, measured)), []
         if self.smooths:
-            force = combine((1 - self.c, unit[-2]), (ONE, force))
+            force = combine((1 - self.c, unit[-2]), (UNIT, force))
             smoothed = [force]
         gain = T / self.axis.mass
-        new = combine((ONE, slowed), (gain, force), (-gain * self.axis.stiffness, measured))
-        ahead = combine((ONE, behind), (T, new))
-        moved = [combine((1 - E, ahead)), *steps]
+        new = combine((UNIT, slowed), (gain, force), (-gain * self.axis.stiffness, measured))
+        ahead = combine((UNIT, lag_state), (T, new))
+        moves = [combine((1 - E, ahead)), *steps]
         left = [combine((E, ahead))] if self.lags else []
-        return [new, *left, *moved[:oldest], *smoothed, combine((ONE, delta), (ONE, moved[oldest]))]
+        return [
+            new,
+            *left,
+            *moves[:oldest],
+            *smoothed,
+            combine((UNIT, delta), (UNIT, moves[oldest])),
+        ]
 
 
-def close_axis(law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> SwitchedSystem:
+def close_axis(law: AdmittanceLaw, axis: Axis, context: ControllerContext) -> SwitchedSystem:
     """Assemble the modes of one axis: every age of the measurement, every end of the ranges."""
-    low, high = around.of(axis) or (Fraction(0), Fraction(0))
-    frame = _Frame(axis, law.joint_damping, law.filter_coefficient, around)
-    others = Box({"D": axis_damping(axis), "E": around.kept})
+    low, high = context.find_stiffness(axis) or (Fraction(0), Fraction(0))
+    frame = _Frame(axis, law.joint_damping, law.filter_coefficient, context)
+    others = Box({"D": axis_damping(axis), "E": context.lag_decay})
     box = Box({"k": Interval(low, low, high)}).beside(others)
-    modes = tuple(_modes(frame, box, around.delays, "contact"))
+    modes = tuple(_modes(frame, box, context.delays, "contact"))
     free = None
-    if axis.selected and axis.stiffness == 0 and around.delays[0] == around.delays[1]:
+    if axis.selected and axis.stiffness == 0 and context.delays[0] == context.delays[1]:
         # Without a spring nothing but the environment knows where the axis is.
-        none = Box({"k": Interval.point(Fraction(0))}).beside(others)
-        free = Contact(tuple(_modes(frame, none, around.delays, "free")))
+        no_stiffness = Box({"k": Interval.point(Fraction(0))}).beside(others)
+        free = Contact(tuple(_modes(frame, no_stiffness, context.delays, "free")))
     return SwitchedSystem(
         name=f"{law.node.name}: axis {axis.name}",
         time=Time.DISCRETE,
@@ -159,31 +165,31 @@ def close_axis(law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Swi
         modes=modes,
         assumptions=(),  # Said beside the verdict, see `assumptions`.
         contact=free,
-        sample_time=around.period,
+        sample_time=context.period,
     )
 
 
 def _modes(frame: _Frame, box: Box, delays: tuple[int, int], name: str) -> Iterator[Mode]:
     for delay in range(delays[0], delays[1] + 1) if frame.moves else (0,):
-        late = f"{name}/age-{delay}" if delays[0] < delays[1] else name
-        for labels, rows in box.corners(partial(frame.rows, delay), late):
-            yield Mode("/".join((late, *labels)), RationalMatrix.from_rows(rows))
+        mode_name = f"{name}/age-{delay}" if delays[0] < delays[1] else name
+        for labels, rows in box.corners(partial(frame.rows, delay), mode_name):
+            yield Mode("/".join((mode_name, *labels)), RationalMatrix.from_rows(rows))
 
 
-def assumptions(around: ControllerContext) -> tuple[str, ...]:
+def assumptions(context: ControllerContext) -> tuple[str, ...]:
     """Return the assumptions of a verdict on an axis."""
-    first, last = around.delays
+    first, last = context.delays
     age = f"{first} periods" if first == last else f"{first} to {last} periods, in any order,"
-    follows = "the robot is where it was commanded to be (--lag)"
-    if around.lag[1]:
-        ends = " to ".join(f"{float(1000 * lag):g}" for lag in around.lag)
-        follows = f"the robot follows its command with a lag of first order, {ends} ms"
+    tracking = "the robot is where it was commanded to be (--lag)"
+    if context.lag[1]:
+        ends = " to ".join(f"{float(1000 * lag):g}" for lag in context.lag)
+        tracking = f"the robot follows its command with a lag of first order, {ends} ms"
     return (
         "what is touched is a spring without damping, whose stiffness lies in the range at every "
         "period and may change from one to the next; a range from 0 also covers contact that is "
         "lost and made at the reference",
         f"the period is always the same; measured offset and force are {age} old",
-        follows,
+        tracking,
         "each axis acts by itself: the control frame is aligned with the base (it may be turned "
         "where masses are equal, and in all cases since ros2_controllers 6.4.0), the Jacobian is "
         "square and regular and does not change, and its damped inverse (alpha) is its inverse",

@@ -33,7 +33,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.document import Position
 
-PARAMETERS, AXIS, OTHERS = (RULES[f"NRS20{i}"] for i in (1, 2, 3))
+PARAMETERS, AXIS, REMAINING_NODES = (RULES[f"NRS20{i}"] for i in (1, 2, 3))
 
 # The verdict on a file is the worst of its axes; the worst comes first.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
@@ -46,53 +46,55 @@ class _Asker:
     path: Path
     limits: Limits
     progress: Progress
-    known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
+    verdicts: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
-    def obligation(self, law: AdmittanceLaw, axis: Axis, around: ControllerContext) -> Obligation:
+    def obligation(self, law: AdmittanceLaw, axis: Axis, context: ControllerContext) -> Obligation:
         """Return the verdict on one axis."""
-        name, met = f"{law.node.name}: axis {axis.name}", around.of(axis)
-        if axis.selected and law.force_from is not None:
-            words = f"its force comes through {law.force_from}, another controller: not modelled"
+        name, stiffness = f"{law.node.name}: axis {axis.name}", context.find_stiffness(axis)
+        if axis.selected and law.force_source is not None:
+            words = f"its force comes through {law.force_source}, another controller: not modelled"
             found = Status.INCONCLUSIVE, words
-        elif met is None:
+        elif stiffness is None:
             kind = ROTATIONAL if axis.rotates else STIFFNESS
             option = "--rotational-stiffness" if axis.rotates else "--stiffness"
             words = f"nothing is said of what it touches: give {option} '{kind.example}'"
             found = Status.INCONCLUSIVE, words
         else:
             numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates)
-            key = (*numbers, met, law.joint_damping, law.filter_coefficient, around.period)
-            if key not in self.known:
+            key = (*numbers, stiffness, law.joint_damping, law.filter_coefficient, context.period)
+            if key not in self.verdicts:
                 self.progress(name)
-                self.known[key] = self._certify(law, axis, around, met)
-            found = self.known[key]
+                self.verdicts[key] = self._certify(law, axis, context, stiffness)
+            found = self.verdicts[key]
         return _owed(AXIS, self.path, name, *found, axis.position)
 
     def _certify(
-        self, law: AdmittanceLaw, axis: Axis, around: ControllerContext, met: Range
+        self, law: AdmittanceLaw, axis: Axis, context: ControllerContext, stiffness: Range
     ) -> tuple[Status, str]:
-        system = close_axis(law, axis, around)
+        system = close_axis(law, axis, context)
         found = certify(system, limits=self.limits)
         status, evidence = Status(str(found.verdict)), found.evidence
-        where = "by itself (no force acts on it)"
+        range_text = "by itself (no force acts on it)"
         if axis.selected:
-            where = _range(met, "N*m/rad" if axis.rotates else "N/m")
+            range_text = _range(stiffness, "N*m/rad" if axis.rotates else "N/m")
         if evidence is None:
             claim = "neither a proof nor a refutation was found"
         elif status is Status.PROVED:
             rate = evidence.proved_rate(system)
-            shown = "" if rate is None else f", rho <= {rate_text(rate, Time.DISCRETE)} per period"
-            lost = ""
+            bound = "" if rate is None else f", rho <= {rate_text(rate, Time.DISCRETE)} per period"
+            contact = ""
             if axis.selected:
-                lost = ", contact lost at will" if evidence.covers_lost_contact else ", in contact"
-            claim = f"stable{lost}{shown}"
+                contact = (
+                    ", contact lost at will" if evidence.covers_lost_contact else ", in contact"
+                )
+            claim = f"stable{contact}{bound}"
         else:
             claim = evidence.claim(system)
-        return status, f"{where}: {claim}"
+        return status, f"{range_text}: {claim}"
 
 
 def check_file(
-    path: Path, asked: ControllerContext, limits: Limits, progress: Progress
+    path: Path, base_context: ControllerContext, limits: Limits, progress: Progress
 ) -> GateOutcome:
     """Read every admittance controller of a file, and decide each of its axes.
 
@@ -100,8 +102,8 @@ def check_file(
     """
     nodes = read_nodes(path)
     controllers = _controllers(nodes, path)
-    beside = [*find_undecided(nodes, controllers)]
-    names = {node.base_name for node in nodes} | {other.name for other in beside}
+    undecided = [*find_undecided(nodes, controllers)]
+    names = {node.base_name for node in nodes} | {other.name for other in undecided}
     asker = _Asker(path, limits, progress)
     obligations: list[Obligation] = []
     cautions: list[Caution] = []
@@ -114,23 +116,23 @@ def check_file(
             obligations += [_unreadable(path, node, fault) for fault in faults]
             continue
         rate = _rate(law, manager, path)
-        around = replace(asked, period=1 / rate)
-        notes |= dict.fromkeys((*assumptions(around), _rate_note(law, manager, rate)))
+        context = replace(base_context, period=1 / rate)
+        notes |= dict.fromkeys((*assumptions(context), _rate_note(law, manager, rate)))
         read = "the parameters that the law depends on are read as written"
         obligations.append(_owed(PARAMETERS, path, node.name, Status.MET, read, node.position))
-        obligations += [asker.obligation(law, axis, around) for axis in law.axes]
+        obligations += [asker.obligation(law, axis, context) for axis in law.axes]
         cautions += find_traps(law, path)
-    for other in (other for other in beside if not other.silent):
-        why = f"passed over, so undecided: {other.reason}"
-        owed = _owed(OTHERS, path, other.name, Status.INCONCLUSIVE, why, other.position)
+    for other in (other for other in undecided if not other.silent):
+        reason = f"passed over, so undecided: {other.reason}"
+        owed = _owed(REMAINING_NODES, path, other.name, Status.INCONCLUSIVE, reason, other.position)
         obligations.append(owed)
     outcome = SpecOutcome(
         path, tuple(obligations), verdict=_verdict(obligations), cautions=tuple(cautions)
     )
-    said = [f"taken for granted: {note}" for note in notes]
-    if silent := ", ".join(other.name for other in beside if other.silent):
-        said.append(f"passed over, because they command nothing: {silent}")
-    return GateOutcome((outcome,), tuple(said))
+    lines = [f"taken for granted: {note}" for note in notes]
+    if silent := ", ".join(other.name for other in undecided if other.silent):
+        lines.append(f"passed over, because they command nothing: {silent}")
+    return GateOutcome((outcome,), tuple(lines))
 
 
 def _controllers(nodes: Collection[RosNode], path: Path) -> list[RosNode]:
@@ -138,7 +140,7 @@ def _controllers(nodes: Collection[RosNode], path: Path) -> list[RosNode]:
     others = (node for node in nodes if node.base_name != MANAGER)
     found = [node for node in others if is_admittance(node, kind_of(node, nodes))]
     # A wildcard sets parameters of the controllers that match it, and is no controller itself.
-    found = [node for node in found if not any(map(node.stands_for, found))]
+    found = [node for node in found if not any(map(node.matches_node, found))]
     if not found:
         names = ", ".join(node.name for node in nodes)
         raise SpecError(
@@ -153,18 +155,18 @@ def _read(
     node: RosNode, manager: RosNode | None, nodes: Collection[RosNode], names: Collection[str]
 ) -> tuple[AdmittanceLaw | None, Sequence[Fault]]:
     """Return the law of a controller, or the faults of its parameters and rate."""
-    beside = [other for other in nodes if other.base_name != MANAGER]
-    if shared := _shared(node, beside, LAW):
-        return None, shared
+    controllers = [other for other in nodes if other.base_name != MANAGER]
+    if shared_faults := _find_shared(node, controllers, LAW):
+        return None, shared_faults
     try:
         law = read_law(node, names)
     except SpecError as error:
         return None, error.faults
-    rates = _shared(manager, nodes, ("update_rate",)) if manager else []
+    rates = _find_shared(manager, nodes, ("update_rate",)) if manager else []
     return (None, rates) if rates else (law, ())
 
 
-def _shared(node: RosNode, nodes: Iterable[RosNode], names: Collection[str]) -> list[Fault]:
+def _find_shared(node: RosNode, nodes: Iterable[RosNode], names: Collection[str]) -> list[Fault]:
     """Return a fault for each of some parameters that another node may set, too."""
     return [
         other.fault(
@@ -194,33 +196,33 @@ def _verdict(obligations: Iterable[Obligation]) -> str | None:
 
 def _rate(law: AdmittanceLaw, manager: RosNode | None, path: Path) -> Fraction:
     """Return how often the law runs, in 1/s: the manager's rate, or its own if that is lower."""
-    own = law.values["update_rate"][0]
+    law_rate = law.values["update_rate"][0]
     values, faults = read_parameter(manager, "update_rate") if manager else ((), [])
     rate = values[0] if values else Fraction(0)
     if not faults and not rate:
         message = "the rate of the control loop is not in this file"
         faults = [law.node.fault("update_rate", message, "add update_rate of controller_manager")]
-    elif not faults and 0 < own < rate and rate % own:
+    elif not faults and 0 < law_rate < rate and rate % law_rate:
         message = (
-            f"{own} does not divide {rate}, the rate of the control loop: the controller runs "
+            f"{law_rate} does not divide {rate}, the rate of the control loop: the controller runs "
             "at uneven periods, or at another rate"
         )
         faults = [law.node.fault("update_rate", message, "write a rate that divides it")]
     if faults:
         raise SpecError.of(faults, path)
-    return min(rate, own) if own else rate
+    return min(rate, law_rate) if law_rate else rate
 
 
 def _rate_note(law: AdmittanceLaw, manager: RosNode | None, rate: Fraction) -> str:
     """Name the source of the rate: only this file is read."""
     assert manager is not None  # _rate
     line = manager.place("update_rate").line
-    said = f"{law.node.name} runs {nearly(rate)} times per second, as "
-    said += f"{manager.name} (line {line}) says"
+    text = f"{law.node.name} runs {nearly(rate)} times per second, as "
+    text += f"{manager.name} (line {line}) says"
     if law.values["update_rate"][0]:
-        own = law.node.place("update_rate").line
-        said += f" together with its own update_rate (line {own})"
-    return f"{said}; what a launch file, a command line or another file sets is not seen here"
+        law_line = law.node.place("update_rate").line
+        text += f" together with its own update_rate (line {law_line})"
+    return f"{text}; what a launch file, a command line or another file sets is not seen here"
 
 
 def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
@@ -228,8 +230,8 @@ def _unreadable(path: Path, node: RosNode, fault: Fault) -> Obligation:
     return Obligation(PARAMETERS, path, node.name, Status.ERROR, message, fault.line, fault.column)
 
 
-def _range(met: Range, unit: str) -> str:
-    low, high = met
+def _range(stiffness: Range, unit: str) -> str:
+    low, high = stiffness
     if low == high:
         return f"at {nearly(low, unit)}"
     return f"from {nearly(low)} to {nearly(high, unit)}"

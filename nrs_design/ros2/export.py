@@ -33,7 +33,7 @@ from nrs_design.spec.sampling import SamplingSpec
 BEGINNING = b"# nrs-design ros2 of "
 SEVERITY = ("proved", "inconclusive", "refuted")
 # Further parameters of the controller, which no design knows.
-BESIDE = (
+REQUIRED_PARAMETERS = (
     "joints (at least six: fewer couple the axes), command_interfaces, state_interfaces, "
     "chainable_command_interfaces, kinematics, ft_sensor.name, frames, gravity_compensation"
 )
@@ -60,12 +60,12 @@ def export_controllers(
     sampling = _sampling(designed)
     share = _filter_share(designed, sampling)
     for controller in designed.design.controllers:
-        met, name = _met(designed, controller), controller.name
+        k, name = _stiffness_range(designed, controller), controller.name
         body = _body(axis, controller, share, sampling)
-        law = _law_in(body, name)
-        around = ControllerContext(sampling.delay, met, met, lag, sampling.period.exact)
-        closed = close_axis(law, law.axes[AXES.index(axis)], around)
-        system = _with_contact(designed, closed)
+        law = _read_back(body, name)
+        context = ControllerContext(sampling.delay, k, k, lag, sampling.period.exact)
+        closed = close_axis(law, law.axes[AXES.index(axis)], context)
+        system = _require_contact(designed, closed)
         found = certify(system, limits=limits)
         verdict, text, certificate = str(found.verdict), "", None
         if found.statements:
@@ -79,9 +79,9 @@ def export_controllers(
                 version=__version__,
             )
         if verdict == "proved" and certificate is not None:
-            about = [*_about(axis, designed, met, certificate)]
-            about += [f"taken for granted: {words}" for words in assumptions(around)]
-            text = _header(name, designed.spec.name, sampling, about) + body
+            notes = [*_proof_lines(axis, designed, k, certificate)]
+            notes += [f"taken for granted: {words}" for words in assumptions(context)]
+            text = _header(name, designed.spec.name, sampling, notes) + body
         yield RosExport(name, verdict, text, certificate)
 
 
@@ -92,7 +92,7 @@ def _refuse(wrong: bool, message: str, remedy: str, *at: str) -> None:
 
 def _sampling(designed: Designed) -> SamplingSpec:
     """Return the processor of a spec whose controllers can be written."""
-    sampling, late = designed.spec.sampling, designed.spec.late_at
+    sampling, delay_key = designed.spec.sampling, designed.spec.late_at
     if sampling is None:
         raise DesignError(
             "the spec does not say when its law runs and how old its force is",
@@ -110,11 +110,11 @@ def _sampling(designed: Designed) -> SamplingSpec:
         "choose one that is, such as 2 ms: update_rate is an integer",
         *("sampling", "period"),
     )
-    if late is not None:
+    if delay_key is not None:
         raise DesignError(
             "the loop of a robot that follows its command by a lag takes commands at their sample",
-            remedy=f"leave {late[1]} out here, and count it into `delay` or the lag",
-            at=late,
+            remedy=f"leave {delay_key[1]} out here, and count it into `delay` or the lag",
+            at=delay_key,
         )
     for controller in designed.design.controllers:
         gains = controller.law.gains
@@ -128,7 +128,7 @@ def _sampling(designed: Designed) -> SamplingSpec:
     return sampling
 
 
-def _with_contact(designed: Designed, system: SwitchedSystem) -> SwitchedSystem:
+def _require_contact(designed: Designed, system: SwitchedSystem) -> SwitchedSystem:
     """Require a proof through any loss of contact where the spec does."""
     if designed.spec.contact != "losable":
         return system
@@ -156,17 +156,17 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
     return 1 - low_pass.discretize(sampling.period.exact).p
 
 
-def _met(designed: Designed, controller: Controller) -> Range:
+def _stiffness_range(designed: Designed, controller: Controller) -> Range:
     """Return the stiffness that a controller may touch, in N m/rad or N/m."""
-    touched = designed.plant.among(controller.contacts)
-    for one in touched:
+    contacts = designed.plant.among(controller.contacts)
+    for one in contacts:
         _refuse(
             one.parameters.keys() != {"k"},
             f"{one.name} is more than a spring, which is not modelled with admittance_controller",
             "give it the model elastic",
             *("environments", one.name),
         )
-    return min(i.stiffness.low for i in touched), max(i.stiffness.high for i in touched)
+    return min(i.stiffness.low for i in contacts), max(i.stiffness.high for i in contacts)
 
 
 def _body(axis: str, controller: Controller, share: Fraction, sampling: SamplingSpec) -> str:
@@ -193,7 +193,7 @@ def _body(axis: str, controller: Controller, share: Fraction, sampling: Sampling
     )
 
 
-def _law_in(body: str, controller: str) -> AdmittanceLaw:
+def _read_back(body: str, controller: str) -> AdmittanceLaw:
     """Read the parameters back, as ROS 2 does: names, types and bounds."""
     nodes = parse_nodes(body, Path("exported parameters"))
     try:
@@ -207,23 +207,25 @@ def _law_in(body: str, controller: str) -> AdmittanceLaw:
         ) from None
 
 
-def _header(name: str, spec: str, sampling: SamplingSpec, about: Sequence[str]) -> str:
-    least, most = sampling.delay
+def _header(name: str, spec: str, sampling: SamplingSpec, notes: Sequence[str]) -> str:
+    age_low, age_high = sampling.delay
     lines = [
         f"nrs-design ros2 of {spec}, controller {name}, nrs-design {__version__}",
         "verdict: PROVED, of the law as admittance_controller computes it with these numbers",
-        f"sample time: {exact_text(sampling.period.exact)} s, measurements {least} to {most} "
+        f"sample time: {exact_text(sampling.period.exact)} s, measurements {age_low} to {age_high} "
         "samples old",
-        *about,
+        *notes,
         *(f"outside the proof: {text}" for text in OUTSIDE),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
-        f"to be given beside this file: {BESIDE}",
+        f"to be given beside this file: {REQUIRED_PARAMETERS}",
     ]
     return "".join(f"# {line}\n" for line in lines)
 
 
-def _about(axis: str, designed: Designed, met: Range, certificate: Certificate) -> Iterator[str]:
+def _proof_lines(
+    axis: str, designed: Designed, k: Range, certificate: Certificate
+) -> Iterator[str]:
     """Yield the proof of one axis in words."""
     evidence, spec = certificate.evidence, designed.spec
     assert evidence is not None, "proved by something"
@@ -231,12 +233,12 @@ def _about(axis: str, designed: Designed, met: Range, certificate: Certificate) 
     yield f"axis {axis}: spec: {spec.name}, sha256 {designed.loaded.sha256}"
     yield f"axis {axis}: certificate: {certificate.id}"
     yield f"axis {axis}: claim: {evidence.claim(certificate.system)}"
-    low, high = map(float, met)
+    low, high = map(float, k)
     yield f"axis {axis}: touched: {low!r} to {high!r} {unit('N*m/rad')}"
     yield f"axis {axis}: units: {unit('kg*m^2')}, {unit('N*m/rad')}, joint_damping in 1/s"
     # A claim says that contact is kept only where its loss is modelled.
-    kept = ("contact is not lost",) if certificate.system.contact is None else ()
-    for text in (*sentences(certificate.granted), *kept):
+    contact_notes = ("contact is not lost",) if certificate.system.contact is None else ()
+    for text in (*sentences(certificate.granted), *contact_notes):
         yield f"axis {axis}: taken for granted: {text}"
 
 

@@ -72,7 +72,7 @@ NEEDED = (
     "gravity_compensation.CoG.pos",
 )
 # All parameters of the node; it ignores others silently.
-KNOWN = frozenset(
+PARAMETER_NAMES = frozenset(
     {*LAW, *NEEDED, "command_joints", "robot_description", "type", "use_sim_time", "is_async"}
 )
 
@@ -105,7 +105,7 @@ class AdmittanceLaw:
     filter_coefficient: Fraction  # Share of the new sample in the smoothed force, in each period
     values: Mapping[str, tuple[Fraction, ...]]  # Everything that was read, defaults filled in
     # Another controller that the force comes through, and that may filter or scale the force.
-    force_from: str | None = None
+    force_source: str | None = None
 
 
 def is_admittance(node: RosNode, kind: str | None) -> bool:
@@ -115,7 +115,7 @@ def is_admittance(node: RosNode, kind: str | None) -> bool:
     return any(name.startswith("admittance.") for name in node.values)
 
 
-def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
+def read_law(node: RosNode, controllers: Collection[str] = ()) -> AdmittanceLaw:
     """Read the law of an admittance controller; a `SpecError` says why the node would not start."""
     read = {name: read_parameter(node, name) for name in LAW}
     faults = [fault for _, wrong in read.values() for fault in wrong]
@@ -123,13 +123,13 @@ def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
         raise SpecError.of(faults, None)
     values = {name: numbers for name, (numbers, _) in read.items()}
     keys = ("selected_axes", "mass", "damping_ratio", "stiffness")
-    each = zip(AXES, *(values[f"admittance.{key}"] for key in keys), strict=True)
+    rows = zip(AXES, *(values[f"admittance.{key}"] for key in keys), strict=True)
     axes = tuple(
         Axis(name, node.place("admittance.mass", i), bool(selected), *numbers)
-        for i, (name, selected, *numbers) in enumerate(each)
+        for i, (name, selected, *numbers) in enumerate(rows)
     )
     damping, share = values["admittance.joint_damping"][0], values[FILTER][0]
-    return AdmittanceLaw(node, axes, damping, share, values, _force_from(node, others))
+    return AdmittanceLaw(node, axes, damping, share, values, _find_force_source(node, controllers))
 
 
 def _too_few_joints(node: RosNode) -> Iterator[Fault]:
@@ -139,47 +139,47 @@ def _too_few_joints(node: RosNode) -> Iterator[Fault]:
     with fewer joints than axes, that couples them, and no proof of one axis by itself holds.
     """
     name = "joints"
-    listed = texts(node.values[name]) if name in node.values else None
-    if listed is not None and len(listed) < len(AXES):
-        many = f"{len(listed)} joint" + "s" * (len(listed) != 1)
+    items = texts(node.values[name]) if name in node.values else None
+    if items is not None and len(items) < len(AXES):
+        count = f"{len(items)} joint" + "s" * (len(items) != 1)
         yield node.fault(
             name,
-            f"{many} cannot move six axes one by one: the pseudoinverse of the Jacobian couples "
+            f"{count} cannot move six axes one by one: the pseudoinverse of the Jacobian couples "
             "them, and every axis is proved by itself",
             "name at least six joints; fewer are not covered by any proof here",
         )
 
 
-def _force_from(node: RosNode, others: Collection[str]) -> str | None:
+def _find_force_source(node: RosNode, controllers: Collection[str]) -> str | None:
     """Return the controller whose interfaces ``ft_sensor.name`` begins with."""
-    listed = texts(node.values["ft_sensor.name"]) if "ft_sensor.name" in node.values else None
-    source = listed[0].text.strip("/").partition("/")[0] if listed else ""
-    return source if source in others else None
+    items = texts(node.values["ft_sensor.name"]) if "ft_sensor.name" in node.values else None
+    source = items[0].text.strip("/").partition("/")[0] if items else ""
+    return source if source in controllers else None
 
 
 def read_parameter(node: RosNode, name: str) -> tuple[tuple[Fraction, ...], list[Fault]]:
     """Return the values of a parameter of `LAW`, and its faults."""
     parameter, count = LAW[name], LAW[name].count
-    wanted = "one value" if count == 1 else f"a list of {count} values"
+    form_text = "one value" if count == 1 else f"a list of {count} values"
     if name not in node.values and name in node.places:
-        return (), [node.fault(name, f"expected {wanted}, found a map", f"write {wanted}")]
+        return (), [node.fault(name, f"expected {form_text}, found a map", f"write {form_text}")]
     if name not in node.values:
         if parameter.default is not None:
             return (parameter.default,), []
-        near = get_close_matches(name, unknown_names(node), n=1, cutoff=0.8)
-        remedy = f"write {name} for {near[0]}" if near else f"add {name}: the controller needs it"
+        names = get_close_matches(name, unknown_names(node), n=1, cutoff=0.8)
+        remedy = f"write {name} for {names[0]}" if names else f"add {name}: the controller needs it"
         return (), [node.fault(name, "is missing", remedy)]
-    listed = texts(node.values[name])
-    if listed is None or len(listed) != count:
-        found = "something else" if listed is None else f"{len(listed)}"
-        return (), [node.fault(name, f"expected {wanted}, found {found}", f"write {wanted}")]
+    items = texts(node.values[name])
+    if items is None or len(items) != count:
+        found = "something else" if items is None else f"{len(items)}"
+        return (), [node.fault(name, f"expected {form_text}, found {found}", f"write {form_text}")]
     numbers, faults = [], []
-    for index, item in enumerate(listed):
+    for index, item in enumerate(items):
         try:
             numbers.append(_bounded(item, parameter))
         except SpecError as error:
-            at = index if count > 1 else None
-            faults.append(node.fault(name, error.message, error.remedy or "", at))
+            item_index = index if count > 1 else None
+            faults.append(node.fault(name, error.message, error.remedy or "", item_index))
     return tuple(numbers), faults
 
 
@@ -188,14 +188,14 @@ def _bounded(item: Scalar, parameter: Parameter) -> Fraction:
     low, high = parameter.low, parameter.high
     if (low is not None and value < low) or (high is not None and value > high):
         ends = "at least" if high is None else "between"
-        wanted = " and ".join(f"{float(end):g}" for end in (low, high) if end is not None)
+        bounds_text = " and ".join(f"{float(end):g}" for end in (low, high) if end is not None)
         raise SpecError(
-            f"{item.text} is not {ends} {wanted}: the controller refuses to start",
-            remedy=f"write a number {ends} {wanted}",
+            f"{item.text} is not {ends} {bounds_text}: the controller refuses to start",
+            remedy=f"write a number {ends} {bounds_text}",
         )
     return value
 
 
 def unknown_names(node: RosNode) -> list[str]:
     """Return the parameters that the controller passes over without a word."""
-    return [name for name in node.values if name not in KNOWN]
+    return [name for name in node.values if name not in PARAMETER_NAMES]

@@ -44,9 +44,9 @@ def managers_of(node: RosNode, nodes: Collection[RosNode]) -> list[RosNode]:
 
 def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
     """Return the type of a controller, as its manager or the node itself says."""
-    own = texts(node.values["type"]) if "type" in node.values else None
-    listed = _types(managers_of(node, nodes)).get(node.base_name)
-    return listed or (own[0].text if own else None)
+    node_types = texts(node.values["type"]) if "type" in node.values else None
+    manager_type = _types(managers_of(node, nodes)).get(node.base_name)
+    return manager_type or (node_types[0].text if node_types else None)
 
 
 def find_undecided(
@@ -56,24 +56,24 @@ def find_undecided(
     for node in nodes:
         if node not in decided and node.base_name != MANAGER and "*" not in node.base_name:
             kind = kind_of(node, nodes)
-            why = "nothing in this file says of which type it is"
+            reason = "nothing in this file says of which type it is"
             if kind is not None:
-                why = f"no model of a controller of type {kind} is here"
-            yield UndecidedNode(node.name, node.position, why, kind in SILENT)
-    here = {node.base_name for node in nodes}
+                reason = f"no model of a controller of type {kind} is here"
+            yield UndecidedNode(node.name, node.position, reason, kind in SILENT)
+    names = {node.base_name for node in nodes}
     for manager in (node for node in nodes if node.base_name == MANAGER):
         for name, kind in _types([manager]).items():
-            if name in here or (kind == TYPE and "**" in here):
+            if name in names or (kind == TYPE and "**" in names):
                 continue
-            why = f"{manager.name} runs it as {kind}, and no node of this name is here"
-            yield UndecidedNode(name, manager.place(f"{name}.type"), why, kind in SILENT)
+            reason = f"{manager.name} runs it as {kind}, and no node of this name is here"
+            yield UndecidedNode(name, manager.place(f"{name}.type"), reason, kind in SILENT)
 
 
 def _types(managers: Iterable[RosNode]) -> dict[str, str]:
     """Return the types of controllers, as their managers say."""
     types: dict[str, str] = {}
     for name, value in (pair for manager in managers for pair in manager.values.items()):
-        listed = texts(value)
-        if name.endswith(".type") and listed:
-            types[name.removesuffix(".type")] = listed[0].text
+        items = texts(value)
+        if name.endswith(".type") and items:
+            types[name.removesuffix(".type")] = items[0].text
     return types

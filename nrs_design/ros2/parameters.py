@@ -40,20 +40,20 @@ class RosNode:
         """The last part of its name."""
         return self.name.rpartition("/")[2]
 
-    def may_share(self, other: RosNode) -> bool:
+    def may_share(self, second: RosNode) -> bool:
         """Tell whether two nodes may share parameters, by a wildcard or the same name.
 
         Which of two counts depends on the release of ROS 2 and on their order.
         """
-        if "*" in self.name and "*" in other.name:
+        if "*" in self.name and "*" in second.name:
             # Some node may be meant by both.
-            bases = self.base_name, other.base_name
+            bases = self.base_name, second.base_name
             return bases[0] == bases[1] or "*" in "".join(bases)
-        return _means(self.name, other.name) or _means(other.name, self.name)
+        return _means(self.name, second.name) or _means(second.name, self.name)
 
-    def stands_for(self, other: RosNode) -> bool:
+    def matches_node(self, second: RosNode) -> bool:
         """Tell whether the name is a wildcard that matches a node without wildcard."""
-        return "*" in self.name and "*" not in other.name and _means(self.name, other.name)
+        return "*" in self.name and "*" not in second.name and _means(self.name, second.name)
 
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
         """Return a fault at a parameter, or at one item of its list."""
@@ -71,11 +71,11 @@ class RosNode:
 def _means(pattern: str, name: str) -> bool:
     """Tell whether a pattern matches a node; ``**`` is any number of parts, ``*`` is one."""
     parts = pattern.strip("/").split("/")
-    wanted = (
+    patterns = (
         "(/[^/]+)*" if part == "**" else "/[^/]+" if "*" in part else f"/{re.escape(part)}"
         for part in parts
     )
-    return re.fullmatch("".join(wanted), f"/{name.strip('/')}") is not None
+    return re.fullmatch("".join(patterns), f"/{name.strip('/')}") is not None
 
 
 def read_nodes(path: Path) -> tuple[RosNode, ...]:
@@ -96,7 +96,7 @@ def parse_nodes(text: str, path: Path) -> tuple[RosNode, ...]:
     return found
 
 
-def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
+def _nodes(tree: Node, namespace: tuple[str, ...]) -> Iterator[RosNode]:
     if not isinstance(tree, Tree):
         return
     for key, value in tree.entries.items():
@@ -104,15 +104,15 @@ def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
             flat = list(_flat(value, ""))
             values = {name: node for name, node, _ in flat if not isinstance(node, Tree)}
             places = {name: place for name, _, place in flat}
-            yield RosNode("/".join(above) or "/", tree.keys[key], values, places)
+            yield RosNode("/".join(namespace) or "/", tree.keys[key], values, places)
         else:
-            yield from _nodes(value, (*above, key.strip("/") or key))
+            yield from _nodes(value, (*namespace, key.strip("/") or key))
 
 
-def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
+def _flat(tree: Tree, prefix: str) -> Iterator[tuple[str, Node, Position]]:
     """Yield name, value and place of parameters and levels; a dot in a key is a level."""
     for key, value in tree.entries.items():
-        name = f"{before}{key}"
+        name = f"{prefix}{key}"
         yield name, value, tree.keys[key]
         if isinstance(value, Tree):
             yield from _flat(value, f"{name}.")

@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from nrs_design.gating.obligations import Caution
-from nrs_design.ros2.law import FILTER, KNOWN, NEEDED, AdmittanceLaw, unknown_names
+from nrs_design.ros2.law import FILTER, NEEDED, PARAMETER_NAMES, AdmittanceLaw, unknown_names
 from nrs_design.ros2.parameters import RosNode, texts
 
 # Default share of the new sample; smaller shares smooth the force longer.
@@ -20,12 +20,12 @@ Trap = tuple[str, int | None, str]
 
 def find_traps(law: AdmittanceLaw, path: Path) -> Iterator[Caution]:
     """Yield what is doubtful about the parameters, each at its place."""
-    for name, index, message in (*_damping(law), *_filter(law), *_others(law), *_unknown(law)):
+    for name, index, message in (*_damping(law), *_filter(law), *_settings(law), *_unknown(law)):
         place = law.node.place(name, index)
         yield Caution(path, f"{law.node.name}: {name}: {message}", place.line, place.column)
 
 
-def _others(law: AdmittanceLaw) -> Iterator[Trap]:
+def _settings(law: AdmittanceLaw) -> Iterator[Trap]:
     masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
     if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
         yield (
@@ -36,13 +36,13 @@ def _others(law: AdmittanceLaw) -> Iterator[Trap]:
             "coupled wherever the two frames are turned, which no verdict here covers",
         )
     if law.values[RETUNING][0]:
-        said = "is on" if RETUNING in law.node.values else "is on by default"
-        rest = "parameters change while the controller runs, and no verdict covers that"
-        yield RETUNING, None, f"{said}: {rest}; set it to false"
+        state = "is on" if RETUNING in law.node.values else "is on by default"
+        consequence = "parameters change while the controller runs, and no verdict covers that"
+        yield RETUNING, None, f"{state}: {consequence}; set it to false"
     if missing := [name for name in NEEDED if name not in law.node.values]:
         names = ", ".join(missing)
-        rest = "unless another file or a launch file gives what this one does not"
-        yield missing[0], None, f"the controller does not start without {names}, {rest}"
+        consequence = "unless another file or a launch file gives what this one does not"
+        yield missing[0], None, f"the controller does not start without {names}, {consequence}"
 
 
 def _same_frame(node: RosNode) -> bool:
@@ -51,21 +51,21 @@ def _same_frame(node: RosNode) -> bool:
         texts(node.values[name]) if name in node.values else None
         for name in ("control.frame.id", "kinematics.base")
     ]
-    names = [listed[0].text for listed in frames if listed]
+    names = [items[0].text for items in frames if items]
     return len(names) == len(frames) and names[0] == names[1]
 
 
 def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     """Yield names that may be slips of the pen, and the others together."""
-    known, others = sorted(KNOWN), []
+    known, others = sorted(PARAMETER_NAMES), []
     for name in unknown_names(law.node):
-        if near := get_close_matches(name, known, n=1, cutoff=0.85):
-            yield name, None, f"is not known to the controller; did you mean {near[0]}?"
+        if matches := get_close_matches(name, known, n=1, cutoff=0.85):
+            yield name, None, f"is not known to the controller; did you mean {matches[0]}?"
         else:
             others.append(name)
     if others:
-        listed = ", ".join(others)
-        yield others[0], None, f"the controller passes over what it does not know: {listed}"
+        unknown_text = ", ".join(others)
+        yield others[0], None, f"the controller passes over what it does not know: {unknown_text}"
 
 
 def _damping(law: AdmittanceLaw) -> Iterator[Trap]:

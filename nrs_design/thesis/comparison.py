@@ -132,8 +132,8 @@ class PrintedRow:
     @property
     def is_computed(self) -> bool:
         """Whether there is a result, if only of its note."""
-        lost = self.verdict == PrintVerdict.NOT_REPRODUCIBLE
-        return not lost or bool(self.right) or "{}" in self.because
+        is_missing = self.verdict == PrintVerdict.NOT_REPRODUCIBLE
+        return not is_missing or bool(self.right) or "{}" in self.because
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +141,12 @@ class Recomputed:
     """What is computed for a row."""
 
     value: Value | str | None = None  # Words or numbers; None for the words of the row
-    holds: bool = True  # Whether the computation confirms the record
+    is_confirmed: bool = True  # Whether the computation confirms the record
     facts: tuple[object, ...] = ()  # Values for the braces in note and `because`
 
 
 # A result, a value alone, or a truth value.
-Found = Recomputed | Value | str | bool
+Result = Recomputed | Value | str | bool
 
 
 @cache
@@ -162,44 +162,44 @@ def _fixed(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
 
 
-def compare_topic(topic: str, found: Iterable[Found]) -> tuple[ReproducedValue, ...]:
+def compare_topic(topic: str, outcomes: Iterable[Result]) -> tuple[ReproducedValue, ...]:
     """Return the rows of a topic with their results, in the order of `rows.yaml`."""
-    rows, results = printed_rows_of(topic), list(found)
+    rows, results = printed_rows_of(topic), list(outcomes)
     if len(results) != sum(row.is_computed for row in rows):
         raise ValueError(f"{topic}: {len(results)} results for the rows that are computed")
     left = iter(results)
     return tuple(judge(row, next(left) if row.is_computed else Recomputed()) for row in rows)
 
 
-def judge(row: PrintedRow, found: Found) -> ReproducedValue:
+def judge(row: PrintedRow, outcome: Result) -> ReproducedValue:
     """Hold a result against the print and against what is on record.
 
     A value that leaves its tolerance makes the row a drift, and so does one that meets a print
     that is on record as missed, or misses one that is on record as met.
     """
-    if isinstance(found, bool):
-        found = Recomputed(holds=found)
-    result = found if isinstance(found, Recomputed) else Recomputed(found)
+    if isinstance(outcome, bool):
+        outcome = Recomputed(is_confirmed=outcome)
+    result = outcome if isinstance(outcome, Recomputed) else Recomputed(outcome)
     because, note = (text.format(*result.facts) for text in (row.because, row.note))
     if because:
         note = f"{BECAUSE} {because}. {note}".strip()
     verdict, printed = PrintVerdict(row.verdict), row.printed
     text = printed if isinstance(printed, str) else ", ".join(printed)
-    made = partial(
+    build = partial(
         ReproducedValue, row.name, row.section, text, fitted=row.fitted, errata=row.errata
     )
     if result.value is None or isinstance(result.value, str):
         words = row.value if result.value is None else result.value
-        verdict = verdict if result.holds else PrintVerdict.DRIFT
-        return made(words, row.unit, None, verdict, note)
+        verdict = verdict if result.is_confirmed else PrintVerdict.DRIFT
+        return build(words, row.unit, None, verdict, note)
     values, reference = _sequence(result.value), _numbers(row.right or printed)
     compared = _is_numeric(printed) and verdict is not PrintVerdict.DERIVED
     tolerance = Tolerance(row.relative or (0.0 if row.absolute else STANDARD), row.absolute)
-    agrees = result.holds and tolerance.allows(values, reference)
+    agrees = result.is_confirmed and tolerance.allows(values, reference)
     if compared and verdict is not PrintVerdict.FITTED:
         agrees &= meets_standard(values, printed) == (verdict is PrintVerdict.REPRODUCED)
     digits = max(DIGITS, _significant_digits(text)) if compared else DIGITS
-    return made(
+    return build(
         ", ".join(format_number(number, digits) for number in values),
         row.unit,
         _deviation(values, _numbers(printed)) if compared else None,
@@ -240,11 +240,11 @@ def format_number(value: Number, digits: int = DIGITS) -> str:
 
 def _precision(printed: Printed) -> str:
     """Write the tolerance of `meets_standard` for each number; equal ones once."""
-    found = (
+    texts = (
         f"{digit:g}" if digit > STANDARD * abs(number) else str(Tolerance(STANDARD))
         for number, digit in zip(_numbers(printed), map(_last_digit, _texts(printed)), strict=True)
     )
-    return ", ".join(dict.fromkeys(found))
+    return ", ".join(dict.fromkeys(texts))
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:

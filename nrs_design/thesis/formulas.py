@@ -21,7 +21,7 @@ from nrs_design.robot.models.robot import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norms
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found
+from nrs_design.thesis.comparison import Result
 from nrs_design.thesis.motor import MOTOR, armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.thesis.switching import family, impedance_rows, printed_rows
 
@@ -30,9 +30,9 @@ _POSE, _RATE = np.array((0.1, -0.2, 0.2)), np.array((0.3, -0.2, 0.05))
 _STEP = 1e-5
 
 
-def formulas() -> Iterable[Found]:
+def formulas() -> Iterable[Result]:
     """Check formulas that are wrong or missing, and some of chapters 2.3 and 5 that are right."""
-    return (holds() for holds in CHECKS.values())
+    return (check() for check in CHECKS.values())
 
 
 def _safe_speed() -> bool:
@@ -51,10 +51,10 @@ def _normals() -> bool:
 
 
 def _generalized_coordinates() -> bool:
-    ahead, behind = _POSE + _STEP * _RATE, _POSE - _STEP * _RATE
-    energies = (float(potential_energy(robot(), pose)) for pose in (ahead, behind))
+    ahead, previous = _POSE + _STEP * _RATE, _POSE - _STEP * _RATE
+    energies = (float(potential_energy(robot(), pose)) for pose in (ahead, previous))
     power = (next(energies) - next(energies)) / (2 * _STEP)
-    rates = (inverse_kinematics(robot(), ahead) - inverse_kinematics(robot(), behind)) / 2 / _STEP
+    rates = (inverse_kinematics(robot(), ahead) - inverse_kinematics(robot(), previous)) / 2 / _STEP
     # With the printed q_a the power would be zero at constant rates.
     return abs(power) > 0.1 and math.isclose(
         float(gravity_torque(robot(), _POSE) @ rates), power, rel_tol=1e-6
@@ -79,8 +79,8 @@ def _armature() -> bool:
     R = armature_resistance(thesis.ACTUATOR, motor)
     friction = K_T / voltage_gain(thesis.ACTUATOR, motor) - K_T * K_B
     right, printed = (R * motor.inertia / (friction + sign * K_T * K_B) for sign in (1, -1))
-    wanted = float(thesis.ACTUATOR.time_constant)
-    return math.isclose(right, wanted, rel_tol=1e-3) and printed < 0 < friction
+    target = float(thesis.ACTUATOR.time_constant)
+    return math.isclose(right, target, rel_tol=1e-3) and printed < 0 < friction
 
 
 def _wanted_acceleration() -> bool:
@@ -113,9 +113,9 @@ def _damping(factor: Fraction) -> float:
 
 def _integrator() -> bool:
     tau = float(thesis.ACTUATOR.time_constant)
-    wanted = 4 / thesis.SETTLING_TIME * complex(-1, math.tan(math.acos(thesis.DAMPING_RATIO)))
-    lag = np.angle(wanted + 1 / tau)
-    right, printed = (np.degrees(lag + more - np.pi) for more in (np.angle(wanted), 0.0))
+    target = 4 / thesis.SETTLING_TIME * complex(-1, math.tan(math.acos(thesis.DAMPING_RATIO)))
+    lag = np.angle(target + 1 / tau)
+    right, printed = (np.degrees(lag + angle - np.pi) for angle in (np.angle(target), 0.0))
     return bool(abs(right - 44.9914) < 5e-3 < abs(printed - 44.9914))
 
 

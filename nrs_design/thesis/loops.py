@@ -22,11 +22,11 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.spec.controllers import Offset
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed
+from nrs_design.thesis.comparison import Recomputed, Result
 from nrs_design.thesis.motor import MOTOR, armature_resistance, speed_torque_gradient, voltage_gain
 
 
-def actuator() -> Iterable[Found]:
+def actuator() -> Iterable[Result]:
     """Recompute the actuator's constants from the frequency response and table 4.1."""
     resistance = armature_resistance(thesis.ACTUATOR, MOTOR)
     return (
@@ -44,16 +44,16 @@ def _pd(time_constant: float) -> PdDesign:
     return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
 
 
-def root_locus() -> Iterator[Found]:
+def root_locus() -> Iterator[Result]:
     """Recompute the design by angle and magnitude condition, then what it really gives."""
     # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
-    unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
-    wn, zeta = rounded.natural_frequency, thesis.DAMPING_RATIO
+    unrounded, design = (_pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant)))
+    wn, zeta = design.natural_frequency, thesis.DAMPING_RATIO
     yield from (wn, wn**2, 2 * zeta * wn)
     yield unrounded.wanted_poles[0]
-    facts = f"{rounded.zero:.4f}", f"{degrees(unrounded.zero_angle):.4f}"
-    yield Recomputed(degrees(rounded.zero_angle), facts=facts)
-    yield from (unrounded.zero, rounded.derivative_gain)
+    facts = f"{design.zero:.4f}", f"{degrees(unrounded.zero_angle):.4f}"
+    yield Recomputed(degrees(design.zero_angle), facts=facts)
+    yield from (unrounded.zero, design.derivative_gain)
     yield float(thesis.DERIVATIVE_GAIN * thesis.ZERO)
     loop = thesis.EXACT_LOOP
     response = motion_loop_response(loop)
@@ -66,7 +66,7 @@ def root_locus() -> Iterator[Found]:
 LOOPS = (thesis.PRINTED_LOOP, thesis.EXACT_LOOP)
 
 
-def impedance() -> Iterator[Found]:
+def impedance() -> Iterator[Result]:
     """Recompute what is desired, the four optima with either G, and how stiff is too stiff."""
     desired, soft, stiff = thesis.DESIRED, float(thesis.SOFT), float(thesis.STIFF)
     yield from (desired, desired / 2, 2 * pi * thesis.BANDWIDTH_IN_HERTZ, soft, stiff)
@@ -90,13 +90,13 @@ def impedance() -> Iterator[Found]:
 
 
 def _optimum(
-    loop: TransferFunction, stiffness: float, desired: float, least: float, weight: float = 0.5
+    loop: TransferFunction, stiffness: float, desired: float, mass_bound: float, weight: float = 0.5
 ) -> tuple[float, float]:
     problem = ImpedanceProblem(
         loop=ImpedanceLoop(loop, Elastic(stiffness)),
         desired=desired,
         bandwidth=2 * pi * thesis.BANDWIDTH_IN_HERTZ,
-        mass_bounds=(least, 1.0),
+        mass_bounds=(mass_bound, 1.0),
         damping_bounds=(0.1, 20.0),
         weight_displayed=weight,
     )
@@ -104,30 +104,30 @@ def _optimum(
     return optimum.Mt, optimum.Bt
 
 
-def force_loop() -> Iterable[Found]:
+def force_loop() -> Iterable[Result]:
     """Recompute the open loop 6.33, what Kp = 0.02 gives, and 6.3.3.3 for both X_i of 6.41."""
     stiffness, loop = float(thesis.SOFT), thesis.EXACT_LOOP
     closed = force_loop_response(loop, stiffness, float(thesis.FORCE_GAIN))
     limit = force_loop_response(loop, stiffness, 0.0)
-    at_zero = (f"{limit.damping_ratio:.4f}", f"{limit.natural_frequency:.2f}")
-    peak, left = _limited("reference", 5.0)
-    positions = [_limited("measured", speed) for speed in (3.0, 5.0, 8.0)]
+    limit_facts = (f"{limit.damping_ratio:.4f}", f"{limit.natural_frequency:.2f}")
+    peak, left = _peak_and_error("reference", 5.0)
+    positions = [_peak_and_error("measured", speed) for speed in (3.0, 5.0, 8.0)]
     return (
         (*(stiffness * b for b in loop.numerator), *loop.denominator),
-        Recomputed(closed.damping_ratio, facts=at_zero),
-        Recomputed(closed.natural_frequency, facts=at_zero),
+        Recomputed(closed.damping_ratio, facts=limit_facts),
+        Recomputed(closed.natural_frequency, facts=limit_facts),
         Recomputed((peak, left), facts=(f"{10 / left:.2f}",)),
         (*(force for force, _ in positions), max(error for _, error in positions)),
     )
 
 
-def _limited(offset: Offset, speed: float) -> tuple[float, float]:
+def _peak_and_error(offset: Offset, speed: float) -> tuple[float, float]:
     """Return the peak torque in N m and the steady error in %, arriving at a speed in deg/s."""
     approach = Approach(offset, math.radians(speed), 0.3)
-    at = (thesis.EXACT_LOOP, float(thesis.SOFT), float(thesis.FORCE_GAIN), approach)
-    peak = peak_force(*at)
+    arguments = (thesis.EXACT_LOOP, float(thesis.SOFT), float(thesis.FORCE_GAIN), approach)
+    peak = peak_force(*arguments)
     assert peak is not None
-    return peak, 100 * steady_force_error(*at)
+    return peak, 100 * steady_force_error(*arguments)
 
 
 # Times in s without and with switching, by experiment of 6.3.2.3.
@@ -136,11 +136,11 @@ TIMES = ((0.75, 0.61), (0.53, 0.41), (0.09, 0.07), (0.16, 0.13))
 DISPLAYED = (2.1372, 2.0997, 2.1766, 2.0494, 2.0883, 2.1131)
 
 
-def experiments() -> Iterable[Found]:
+def experiments() -> Iterable[Result]:
     """List the measurements, and recompute what the thesis says of them."""
     gains = tuple(100 * (1 - fast / slow) for slow, fast in TIMES)
     return (
-        tuple(100 * (shown / thesis.DESIRED - 1) for shown in DISPLAYED),
+        tuple(100 * (impedance_shown / thesis.DESIRED - 1) for impedance_shown in DISPLAYED),
         (degrees(0.0873), degrees(0.0524)),
         gains,
         fmean(gains),
@@ -151,7 +151,7 @@ def experiments() -> Iterable[Found]:
 ADMITTANCES = ((1, 4), (2, 4), (3, 4), (1, 8), (2, 8), (3, 8))
 
 
-def hands_on() -> Iterable[Found]:
+def passivity() -> Iterable[Result]:
     """Compute the poles of G Y, the hand that destabilizes the robot, and where it is passive."""
     motion = motion_loop_response(thesis.EXACT_LOOP).poles
     laws = (Admittance(Fraction(Mt), Fraction(Bt)) for Mt, Bt in ADMITTANCES)

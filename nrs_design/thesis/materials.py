@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import Any
 
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, Maxwell
-from nrs_design.thesis.comparison import Found, Recomputed, format_number, read_data
+from nrs_design.thesis.comparison import Recomputed, Result, format_number, read_data
 
 # Thesis 6.2: the compliant controllers, which the laws are for, ran every 0.1 ms on a computer; the
 # motion loop at 500 Hz on the processor. How often the records of 6.1 were sampled is not printed.
@@ -17,7 +17,7 @@ PERIOD = 1e-4
 ARM = 0.24
 
 
-def tissue() -> Iterator[Found]:
+def tissue() -> Iterator[Result]:
     """Convert the coefficients, and hold the text against the tables."""
     tissues = read_data("tables.yaml")["tissue"]
     times = [damping / stiffness for stiffness, damping in (t["voigt"] for t in tissues.values())]
@@ -39,14 +39,14 @@ def tissue() -> Iterator[Found]:
         yield Recomputed(found, worst != printed["worst"], (best, f"{means[best]:.4f}"))
 
 
-def specimens() -> Iterable[Found]:
+def specimens() -> Iterable[Result]:
     """Recompute the means; the fits themselves rest on records that are not printed."""
     hand = tuple(Elastic(k).at_pivot(ARM).stiffness for k in (1002 - 568, 1002, 1002 + 568))
     fits = read_data("tables.yaml")["specimens"].values()
-    return (*(found for printed in fits for found in _of_specimen(printed)), hand)
+    return (*(found for printed in fits for found in _specimen_rows(printed)), hand)
 
 
-def _of_specimen(printed: dict[str, Any]) -> Iterator[Found]:
+def _specimen_rows(printed: dict[str, Any]) -> Iterator[Result]:
     mean = fmean(printed["elastic"])
     yield mean
     yield Elastic(mean).at_pivot(ARM).stiffness
@@ -61,17 +61,17 @@ def _of_specimen(printed: dict[str, Any]) -> Iterator[Found]:
         yield Recomputed(found, exists == (eta3 < PERIOD / 100))
     # The largest errors are above the root mean square errors.
     errors, forces, rmse = (map(Decimal, printed[key]) for key in ("errors", "forces", "rmse"))
-    least = [_least(*pair) for pair in zip(rmse, forces, strict=True)]
-    pairs = enumerate(zip(errors, least, strict=True), 1)
-    below = [f"{i}" for i, (error, bound) in pairs if error + Decimal("0.5") < bound]
-    told = "at least " + ", ".join(map(str, least))
-    yield Recomputed(told, len(below) == 1, (" and ".join(below),))
+    lower_bounds = [_lower_bound(*pair) for pair in zip(rmse, forces, strict=True)]
+    pairs = enumerate(zip(errors, lower_bounds, strict=True), 1)
+    violations = [f"{i}" for i, (error, bound) in pairs if error + Decimal("0.5") < bound]
+    bounds_text = "at least " + ", ".join(map(str, lower_bounds))
+    yield Recomputed(bounds_text, len(violations) == 1, (" and ".join(violations),))
 
 
-def _least(rmse: Decimal, force: Decimal) -> Decimal:
+def _lower_bound(rmse: Decimal, force: Decimal) -> Decimal:
     """Return the least quotient in % that two prints leave open, rounded down."""
-    least, most = rmse - _half_digit(rmse), force + _half_digit(force)
-    return (100 * least / most).quantize(Decimal("0.01"), ROUND_FLOOR)
+    error_low, force_high = rmse - _half_digit(rmse), force + _half_digit(force)
+    return (100 * error_low / force_high).quantize(Decimal("0.01"), ROUND_FLOOR)
 
 
 def _half_digit(number: Decimal) -> Decimal:

@@ -32,7 +32,7 @@ from nrs_design.robot.models.workspace import joint_peaks, pose_grid, thesis_gri
 from nrs_design.spec import RobotSpec
 from nrs_design.spec.kinds import LENGTH
 from nrs_design.spec.quantity import parse_quantity
-from nrs_design.thesis.comparison import Found, Recomputed, printed_rows_of
+from nrs_design.thesis.comparison import Recomputed, Result, printed_rows_of
 from nrs_design.thesis.motor import MOTOR
 
 POSE = (0.1, -0.2, 0.2)
@@ -41,16 +41,16 @@ _ROUNDING = 1e-12
 ACCELERATION_PER_SPEED = 3.7
 
 
-def robot_kinematics() -> Iterator[Found]:
+def robot_kinematics() -> Iterator[Result]:
     """Recompute the crank angle, the orientation and the joint speeds."""
-    ours = robot()
-    yield float(inverse_kinematics(ours, POSE)[2])
-    space = ours.workspace
+    model = robot()
+    yield float(inverse_kinematics(model, POSE)[2])
+    space = model.workspace
     poses = pose_grid([0.0], (-space.psi, 0.0, space.psi), np.linspace(*space.d, 101))
-    crank = np.degrees(inverse_kinematics(ours, poses)[..., 2])
+    crank = np.degrees(inverse_kinematics(model, poses)[..., 2])
     yield float(crank.min()), float(crank.max())
     yield from _orientation()
-    yield from _speeds(ours)
+    yield from _speeds(model)
 
 
 def _orientation() -> Iterator[Recomputed]:
@@ -58,13 +58,13 @@ def _orientation() -> Iterator[Recomputed]:
     W = np.array(direction(pose))
     printed = _pointing(phi, float(np.arcsin(np.sin(psi) / np.cos(phi))))
     x, y, _ = orientation(pose)
-    ours, theirs = (float(np.abs(z - W).max()) for z in (_pointing(float(x), float(y)), printed))
-    yield Recomputed(None, ours < _ROUNDING < theirs, (f"{theirs:.2g}",))
+    error, misprint = (float(np.abs(z - W).max()) for z in (_pointing(float(x), float(y)), printed))
+    yield Recomputed(None, error < _ROUNDING < misprint, (f"{misprint:.2g}",))
     h = 1e-6 * np.eye(3)
     slopes = np.transpose([(orientation(pose + s) - orientation(pose - s)) / 2e-6 for s in h])
     J = orientation_jacobian(pose)
     exchanged = np.abs(J[[1, 0, 2]] - slopes).max()
-    yield Recomputed(holds=bool(np.abs(J - slopes).max() < 1e-8 < exchanged))
+    yield Recomputed(is_confirmed=bool(np.abs(J - slopes).max() < 1e-8 < exchanged))
 
 
 def _pointing(x: float, y: float) -> Array:
@@ -72,44 +72,44 @@ def _pointing(x: float, y: float) -> Array:
     return np.array([np.sin(y), -np.sin(x) * np.cos(y), np.cos(x) * np.cos(y)])
 
 
-def _speeds(ours: Robot) -> Iterator[Found]:
-    limits, per_speed = ours.task_limits, ACCELERATION_PER_SPEED
+def _speeds(model: Robot) -> Iterator[Result]:
+    limits, per_speed = model.task_limits, ACCELERATION_PER_SPEED
     yield float(np.degrees(limits.angular_velocity))
     yield per_speed * limits.angular_velocity, 1e3 * per_speed * limits.linear_velocity
     v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
-    depths = np.linspace(*ours.workspace.d, 1001)
+    depths = np.linspace(*model.workspace.d, 1001)
     upright = np.stack([0 * depths, 0 * depths, depths], axis=-1)
-    crank = np.abs(inverse_jacobian(ours, upright) @ v)[:, 2]
+    crank = np.abs(inverse_jacobian(model, upright) @ v)[:, 2]
     yield Recomputed(float(crank.min()), facts=(f"{1e3 * depths[crank.argmin()]:.0f}",))
-    velocity, acceleration = joint_peaks(ours, thesis_grid())
+    velocity, acceleration = joint_peaks(model, thesis_grid())
     yield tuple(map(float, velocity))
     largest = ", ".join(f"{value:.2f}" for value in acceleration)
     yield Recomputed(per_speed * 2.0094, facts=(largest,))
 
 
-def robot_dynamics() -> Iterator[Found]:
+def robot_dynamics() -> Iterator[Result]:
     """Recompute torque shares and inertia ratios, and what the place of the platform does."""
-    ours = robot()
+    model = robot()
     poses = thesis_grid()
-    yield tuple(100 * share for share in torque_shares(ours, poses).means)
+    yield tuple(100 * share for share in torque_shares(model, poses).means)
     # The 36.7 mm of table 3.1, read both ways.
     lateral, axial = (
         float(
             correction_coefficients(
-                replace(ours, platform=slender_rod(ours.platform.mass, place, 0.25, 2)),
+                replace(model, platform=slender_rod(model.platform.mass, place, 0.25, 2)),
                 TABLE_3_5[0],
             ).mean_ratio[0]
         )
         for place in ((0.0367, 0.0, 0.010), (0.0, 0.0, 0.0367))
     )
     yield Recomputed((lateral, axial), abs(lateral - 1.8318) < 0.1 * abs(axial - 1.8318))
-    right = simplified_dynamics(ours, poses).Ms
-    printed = simplified_dynamics(ours, poses, printed=True).Ms
+    right = simplified_dynamics(model, poses).Ms
+    printed = simplified_dynamics(model, poses, printed=True).Ms
     scale = np.abs(right).max(axis=(-1, -2), keepdims=True)
     worst = float((np.abs(printed - right) / scale).max())
     yield Recomputed(None, 1e-4 < worst < 1e-2, (f"{100 * worst:.2g}",))
     reflected = 1 / (905**2 * MOTOR.inertia)
-    full = float(mass_matrix(ours, ours.home)[0, 0])
+    full = float(mass_matrix(model, model.home)[0, 0])
     facts = (f"{full:.4f}", f"{100 * full * reflected:.1f}")
     yield Recomputed(100 * 0.055 * reflected, facts=facts)
 
@@ -136,8 +136,8 @@ def correction() -> Iterator[Recomputed]:
         yield Recomputed(facts=tuple(f"{found[2]:.3f}" for found in (depth, angles)))
 
 
-def _ratios(found: Correction) -> tuple[float, ...]:
-    return tuple(map(float, found.mean_ratio))
+def _ratios(coefficients: Correction) -> tuple[float, ...]:
+    return tuple(map(float, coefficients.mean_ratio))
 
 
 def _text(numbers: object) -> str:
@@ -150,37 +150,37 @@ def tracking() -> tuple[float]:
 
 
 # Thesis 4.4: M_c and M_b in g, k in N/mm, of the left and the right leg.
-LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
+LEFT_LEG, RIGHT_LEG = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
 PAYLOAD = 0.4428  # Printed payload of a leg in kg
 
 
-def passive_balance() -> Iterable[Found]:
+def passive_balance() -> Iterable[Result]:
     """Recompute counter-masses, springs and the misprinted lengths."""
     spec = robot_spec()
-    ours, rounded = (design_balance(one, robot()) for one in (spec, _with_printed_arms(spec)))
-    left, right, arm = ours.left, ours.right, robot().legs[0]
-    moment = 1e-3 * LEFT[0] * left.arm_distance - PAYLOAD * arm.l3
+    exact, approximate = (design_balance(one, robot()) for one in (spec, _use_printed_arms(spec)))
+    left, right, arm = exact.left_leg, exact.right_leg, robot().legs[0]
+    moment = 1e-3 * LEFT_LEG[0] * left.arm_distance - PAYLOAD * arm.l3
     return (
-        *_leg(left, rounded.left),
-        *_leg(right, rounded.right),
-        1e6 * left.arm_mass * left.arm_distance / LEFT[0],
-        1e6 * left.coupler_mass * left.coupler_distance / LEFT[1],
-        left.stiffness * left.spring_on_crank / LEFT[2],
-        right.stiffness * right.spring_on_crank / RIGHT[2],
+        *_leg(left, approximate.left_leg),
+        *_leg(right, approximate.right_leg),
+        1e6 * left.arm_mass * left.arm_distance / LEFT_LEG[0],
+        1e6 * left.coupler_mass * left.coupler_distance / LEFT_LEG[1],
+        left.stiffness * left.spring_on_crank / LEFT_LEG[2],
+        right.stiffness * right.spring_on_crank / RIGHT_LEG[2],
         1e3 * moment / arm.arm.mass,
     )
 
 
-def _leg(ours: LegBalance, rounded: LegBalance) -> Iterator[Recomputed]:
+def _leg(exact: LegBalance, approximate: LegBalance) -> Iterator[Recomputed]:
     """Yield masses, distance and spring of a leg, with those for the printed arms as facts."""
     for mass in ("arm_mass", "coupler_mass", "total_mass"):
-        without = f"{1e3 * getattr(rounded, mass):.1f}"
-        yield Recomputed(1e3 * getattr(ours, mass), facts=(without,))
-    yield Recomputed(1e3 * ours.total_distance)
-    yield Recomputed(1e-3 * ours.stiffness, facts=(f"{1e-3 * rounded.stiffness:.4f}",))
+        approximate_text = f"{1e3 * getattr(approximate, mass):.1f}"
+        yield Recomputed(1e3 * getattr(exact, mass), facts=(approximate_text,))
+    yield Recomputed(1e3 * exact.total_distance)
+    yield Recomputed(1e-3 * exact.stiffness, facts=(f"{1e-3 * approximate.stiffness:.4f}",))
 
 
-def _with_printed_arms(spec: RobotSpec) -> RobotSpec:
+def _use_printed_arms(spec: RobotSpec) -> RobotSpec:
     """Return the spec with the printed 115 and 220 mm in place of the fitted arms."""
     assert spec.balance is not None
     texts = {"arm_counter_arm": "115 mm", "coupler_counter_arm": "220 mm"}

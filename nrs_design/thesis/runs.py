@@ -27,7 +27,7 @@ from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed
+from nrs_design.thesis.comparison import Recomputed, Result
 from nrs_design.thesis.loops import ADMITTANCES
 
 POSITION = "{type: position}"
@@ -37,13 +37,13 @@ PROPORTIONAL_FROM_MEASURED = f"{{type: force, {_GAIN}, offset: measured}}"
 INTEGRAL = f"{{type: pi-force, {_GAIN}, integral_gain: 0.5 rad/(N*m*s)}}"
 BLEEDING = "idle_states: {decay: 20 1/s}"
 # Kinds of control, as scenarios have them.
-BY_SIGN = "{sign: {insertion: insertion, withdrawal: withdrawal}}"
-BY_THRESHOLD = f"{{threshold: {{position: position, force: force, torque: {thesis.TORQUE} N*m}}}}"
+SIGN_YAML = "{sign: {insertion: insertion, withdrawal: withdrawal}}"
+THRESHOLD_YAML = f"{{threshold: {{position: position, force: force, torque: {thesis.TORQUE} N*m}}}}"
 # The profile of figure 6.7: seconds and deg/s. The print gives its shape and the largest speed.
 PROFILE = ((0, 0), (1, 8), (2, 2), (3, 8), (4, 0), (5, -8), (6, -8), (7, 0))
 
 
-def interaction(controllers: dict[str, str], scenario: str, more: str = "") -> str:
+def interaction(controllers: dict[str, str], scenario: str, extra: str = "") -> str:
     """Return a spec of the thesis's robot with one scenario, ``run``; all parts are YAML."""
     numbers = {
         "gain": thesis.ACTUATOR.gain,
@@ -53,29 +53,29 @@ def interaction(controllers: dict[str, str], scenario: str, more: str = "") -> s
         "soft": thesis.SOFT,
         "stiff": thesis.STIFF,
     }
-    at = {name: exact_text(number) for name, number in numbers.items()}
+    texts = {name: exact_text(number) for name, number in numbers.items()}
     lines = "\n".join(f"  {name}: {text}" for name, text in controllers.items())
     return f"""\
 kind: interaction-design
 name: runs
-actuator: {{gain: {at["gain"]} rad/s/rpm, time_constant: {at["tau"]} s}}
+actuator: {{gain: {texts["gain"]} rad/s/rpm, time_constant: {texts["tau"]} s}}
 motion_loop: {{damping_ratio: {thesis.DAMPING_RATIO}, settling_time: {thesis.SETTLING_TIME} s,
-  derivative_gain: {at["Kd"]} rpm*s/rad, zero: {at["zero"]} 1/s}}
+  derivative_gain: {texts["Kd"]} rpm*s/rad, zero: {texts["zero"]} 1/s}}
 limits: {{velocity: 8 deg/s, torque: {thesis.TORQUE} N*m, bandwidth: 2 Hz}}
 environments:
-  soft: {{model: elastic, stiffness: {at["soft"]} N*m/rad}}
-  stiff: {{model: elastic, stiffness: {at["stiff"]} N*m/rad}}
+  soft: {{model: elastic, stiffness: {texts["soft"]} N*m/rad}}
+  stiff: {{model: elastic, stiffness: {texts["stiff"]} N*m/rad}}
 controllers:
 {lines}
 switching: arbitrary
 scenarios: {{run: {{{scenario}}}}}
-{more}
+{extra}
 """
 
 
-def run_scenario(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
+def run_scenario(controllers: dict[str, str], scenario: str, extra: str = "") -> Run:
     """Simulate it with the exact engine."""
-    text = interaction(controllers, scenario, more)
+    text = interaction(controllers, scenario, extra)
     designed = run_design(
         LoadedSpec(path=Path("runs.nrs.yaml"), sha256="", text=text, spec=parse_spec(text))
     )
@@ -103,18 +103,18 @@ def into(tissue: float, *pairs: tuple[float, float], control: str = "") -> str:
     return f"{begin}, control: {control}" if control else begin
 
 
-def simulated_runs() -> Iterator[Found]:
+def simulated_runs() -> Iterator[Result]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
     yield from _profile()
     for speed in (5, 3):
-        before, after = (_withdrawal(speed, c) for c in ("{fixed: insertion}", BY_SIGN))
+        before, after = (_withdrawal(speed, c) for c in ("{fixed: insertion}", SIGN_YAML))
         gain = 100 * (1 - after / before)
         # Time in s to pass the deflection under the largest torque.
-        away = math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
-        yield Recomputed((before, after, gain), gain > 0, (f"{away:.2f}",))
-    yield _limited(PROPORTIONAL)
-    yield _limited(PROPORTIONAL_FROM_MEASURED)
-    yield _limited(INTEGRAL, BLEEDING)
+        escape_time = math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
+        yield Recomputed((before, after, gain), gain > 0, (f"{escape_time:.2f}",))
+    yield _peak_and_error(PROPORTIONAL)
+    yield _peak_and_error(PROPORTIONAL_FROM_MEASURED)
+    yield _peak_and_error(INTEGRAL, BLEEDING)
     yield _tissue_and_tool()
 
 
@@ -127,10 +127,10 @@ def _profile() -> Iterator[Recomputed]:
     yield Recomputed(peaks, peaks[0] > thesis.TORQUE > peaks[1])
     constant = into(1, (0, 4), (2, 4))
     settled = run_scenario({"insertion": admittance("0", "2.15")}, constant).response
-    shown, _ = metrics.displayed_impedance(settled["hand"], settled["torque"])
+    impedance, _ = metrics.displayed_impedance(settled["hand"], settled["torque"])
     hand, torque = run.response["hand"], run.response["torque"]
     error = metrics.impedance_rmse(run.response.t, hand, torque, thesis.DESIRED)
-    yield Recomputed((float(shown[-1]), error or math.nan))
+    yield Recomputed((float(impedance[-1]), error or math.nan))
 
 
 def _withdrawal(speed: float, control: str) -> float:
@@ -138,20 +138,20 @@ def _withdrawal(speed: float, control: str) -> float:
 
     The speed out is in deg/s; control says, as YAML, which controller acts when.
     """
-    both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
+    laws = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
     command = ((0, 8), (1, 8), (1, -speed), (2, -speed))
-    found = run_scenario(both, into(0.5, *command, control=control)).response
+    found = run_scenario(laws, into(0.5, *command, control=control)).response
     (time,) = metrics.withdrawal_times(found.t, found["hand"], found["torque"])
     return time
 
 
-def _limited(force: str, more: str = "") -> tuple[float, float]:
+def _peak_and_error(force: str, extra: str = "") -> tuple[float, float]:
     """Return the peak torque in N m and the steady error in % of force control."""
-    scenario = into(1, (0, 5), (2, 5), control=BY_THRESHOLD)
-    run = run_scenario({"position": POSITION, "force": force}, scenario, more)
+    scenario = into(1, (0, 5), (2, 5), control=THRESHOLD_YAML)
+    run = run_scenario({"position": POSITION, "force": force}, scenario, extra)
     ((begin, _),) = run.switches
-    inside = run.response.t >= begin
-    t, torque = run.response.t[inside], run.response["torque"][inside]
+    force_phase = run.response.t >= begin
+    t, torque = run.response.t[force_phase], run.response["torque"][force_phase]
     peak = thesis.TORQUE * (1 + metrics.overshoot(torque, thesis.TORQUE))
     # The rest of a decay, and rounding, are no steady error.
     return peak, round(100 * metrics.steady_state_error(t, torque, thesis.TORQUE), 6)
@@ -239,14 +239,14 @@ def hand_runs() -> Iterator[Recomputed]:
     pushed = [move(*admittance) for admittance in ADMITTANCES]
     led = [move(*admittance, HAND) for admittance in ADMITTANCES]
     slow, fast = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))
-    near = all(abs(slow[i] - SPEEDS[i]) < 1 for i in range(4))
-    yield Recomputed(slow, near and all(change < 0 for change in slow))
-    between = zip(fast[4:], SPEEDS[4:], slow[4:], strict=True)
-    yield Recomputed(fast, all(led > printed > pushed for led, printed, pushed in between))
+    is_near = all(abs(slow[i] - SPEEDS[i]) < 1 for i in range(4))
+    yield Recomputed(slow, is_near and all(value < 0 for value in slow))
+    triples = zip(fast[4:], SPEEDS[4:], slow[4:], strict=True)
+    yield Recomputed(fast, all(led > printed > pushed for led, printed, pushed in triples))
     low, high = (changes([run.effort.total for run in runs]) for runs in (pushed, led))
     pairs = zip(low, TORQUES, strict=True)
-    yield Recomputed(low, all(ours > 0 and abs(ours - theirs) < 12 for ours, theirs in pairs))
-    yield Recomputed(high, all(ours > 0 for ours in high))
+    yield Recomputed(low, all(value > 0 and abs(value - printed) < 12 for value, printed in pairs))
+    yield Recomputed(high, all(value > 0 for value in high))
     found = [run.effort for run in pushed]
     energies = [e.energy for e in found]
     numbers = (*(e.total for e in found), max(e.rms for e in found), max(energies))

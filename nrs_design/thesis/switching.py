@@ -29,7 +29,7 @@ from nrs_design.search.gradient import (
     find_by_gradient,
 )
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Number, Recomputed, format_number
+from nrs_design.thesis.comparison import Number, Recomputed, Result, format_number
 
 MOTION = realize(thesis.REALIZED_LOOP)
 
@@ -41,10 +41,10 @@ def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> R
     """
     environment = Elastic(stiffness)
     rows = velocity_mode(MOTION, Admittance(Fraction(Mt), Fraction(Bt)), environment)
-    return rows if coordinates == "deflection" else to_force_coordinates(rows, MOTION, environment)
+    return rows if coordinates == "deflection" else replace_by_force(rows, MOTION, environment)
 
 
-def to_force_coordinates(rows: Rows, motion: Realization, contact: AbstractLinearLaw) -> Rows:
+def replace_by_force(rows: Rows, motion: Realization, contact: AbstractLinearLaw) -> Rows:
     """Replace the last state delta by the force ``F = k delta + b Cp xp``."""
     last = coordinates(len(rows))[-1:]
     return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
@@ -69,14 +69,14 @@ def printed_rows(damping: str, force: tuple[str, str]) -> Rows:
 
 def family(name: str, *modes: Rows) -> SwitchedSystem:
     """Return the switched system of some matrices."""
-    named = tuple(Mode(f"A{i + 1}", RationalMatrix.from_rows(rows)) for i, rows in enumerate(modes))
+    items = tuple(Mode(f"A{i + 1}", RationalMatrix.from_rows(rows)) for i, rows in enumerate(modes))
     states = tuple(f"x{i + 1}" for i in range(len(modes[0])))
     return SwitchedSystem(
-        name=name, time=Time.CONTINUOUS, states=states, modes=named, assumptions=()
+        name=name, time=Time.CONTINUOUS, states=states, modes=items, assumptions=()
     )
 
 
-def modes() -> Iterator[Found]:
+def modes() -> Iterator[Result]:
     """Recompute the matrices entry by entry, and their eigenvalues."""
     num, den = thesis.EXACT_LOOP.numerator, thesis.EXACT_LOOP.denominator
     yield -den[2] / den[0], -den[1] / den[0]
@@ -120,9 +120,9 @@ def switching() -> Iterator[Recomputed]:
     force = ("70183.13", "1231.97")
     found = certify(family("print", printed_rows("-215", force), printed_rows("-104", force)))
     yield Recomputed(_describe(found), found.verdict == "refuted")
-    without, with_mass = certify(withdrawal("0")), certify(withdrawal())
-    told = f"Mt = 0: {_describe(without)}; Mt = 0.01: {_describe(with_mass)}"
-    yield Recomputed(told, without.verdict == with_mass.verdict == "proved")
+    massless, massive = certify(withdrawal("0")), certify(withdrawal())
+    text = f"Mt = 0: {_describe(massless)}; Mt = 0.01: {_describe(massive)}"
+    yield Recomputed(text, massless.verdict == massive.verdict == "proved")
 
 
 def withdrawal(Mt: str = "0.01") -> SwitchedSystem:
@@ -137,15 +137,15 @@ def tool_and_tissue() -> SwitchedSystem:
     return family("tool", tool, impedance_rows(thesis.SOFT, "0.01", "2.15", "force"))
 
 
-def _describe(found: Certification) -> str:
-    rate = found.evidence.proved_rate(found.system) if found.evidence else None
+def _describe(result: Certification) -> str:
+    rate = result.evidence.proved_rate(result.system) if result.evidence else None
     if rate is None:
-        return str(found.verdict)
-    return f"{found.verdict}, {rate_words(rate, found.system.time)}"
+        return str(result.verdict)
+    return f"{result.verdict}, {rate_words(rate, result.system.time)}"
 
 
 # Updates of a row: enough for every run that ends in the scan below.
-UPDATES, FEW = 20_000, 2000
+UPDATES, FEW_UPDATES = 20_000, 2000
 # One radius of many; the thesis prints none.
 RADIUS = 1e5
 
@@ -159,7 +159,7 @@ def pairs() -> tuple[tuple[str, SwitchedSystem], ...]:
     )
 
 
-def gradient() -> Iterable[Found]:
+def gradient() -> Iterable[Result]:
     """Run the iteration on all pairs, in the states of the thesis and in others."""
     return (
         _result(system, coordinates, ends=section == "6.3.3.2" or coordinates != Coordinates.GIVEN)
@@ -185,10 +185,10 @@ def run(
 
 def _result(system: SwitchedSystem, coordinates: Coordinates, *, ends: bool) -> Recomputed:
     radius = RADIUS if coordinates == Coordinates.GIVEN else 1.0
-    updates = UPDATES if ends else FEW
+    updates = UPDATES if ends else FEW_UPDATES
     found = [run(system, coordinates, radius, order, updates) for order in Order]
-    told = ", ".join(
+    text = ", ".join(
         f"not within {updates:,}" if result.Q is None else f"{result.updates:,}" for result in found
     )
     # One of two orders suffices: rounding decides which order is quicker.
-    return Recomputed(told, any(result.Q is not None for result in found) == ends)
+    return Recomputed(text, any(result.Q is not None for result in found) == ends)

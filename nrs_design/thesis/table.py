@@ -9,9 +9,9 @@ from nrs_design.progress import Progress, silent
 from nrs_design.thesis import formulas, loops, materials, robot, runs, switching
 from nrs_design.thesis.comparison import (
     Erratum,
-    Found,
     PrintVerdict,
     ReproducedValue,
+    Result,
     compare_topic,
     errata,
     read_data,
@@ -24,7 +24,7 @@ CONVERTED = (
 
 
 # Function that computes the results of each topic.
-TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
+TOPICS: Mapping[str, Callable[[], Iterable[Result]]] = {
     "formulas": formulas.formulas,
     "tissue": materials.tissue,
     "robot_kinematics": robot.robot_kinematics,
@@ -42,7 +42,7 @@ TOPICS: Mapping[str, Callable[[], Iterable[Found]]] = {
     "gradient": switching.gradient,
     "experiments": loops.experiments,
     "runs": runs.simulated_runs,
-    "hands_on": loops.hands_on,
+    "hands_on": loops.passivity,
     "hand_runs": runs.hand_runs,
 }
 
@@ -73,7 +73,7 @@ def printed_errors(
     """Return each error of the print once, with the rows that are printed differently for it."""
     wrong = [row for row in table if row.verdict is PrintVerdict.PRINTED_DIFFERENTLY]
     found = ((one, tuple(row for row in wrong if one.id in row.errata)) for one in errata())
-    return tuple((one, touched) for one, touched in found if touched)
+    return tuple((one, error_rows) for one, error_rows in found if error_rows)
 
 
 def counts_line(table: Sequence[ReproducedValue]) -> str:

@@ -45,7 +45,7 @@ def test_a_range_of_one_number_is_written_once():
 
 
 def test_interval_is_symmetric_in_the_logarithm():
-    estimate = Estimate.from_log(math.log(2.0), math.log(3.0))
+    estimate = Estimate.build_from_log(math.log(2.0), math.log(3.0))
     assert (estimate.value, estimate.low, estimate.high) == pytest.approx((2.0, 2 / 3, 6.0))
     assert estimate.covers(6)
     assert not estimate.covers(6.01)
@@ -54,7 +54,7 @@ def test_interval_is_symmetric_in_the_logarithm():
 
 @pytest.mark.parametrize("half", [math.inf, math.nan, 1e4])
 def test_an_unknown_parameter_has_no_bounds(half):
-    estimate = Estimate.from_log(0.0, half)
+    estimate = Estimate.build_from_log(0.0, half)
     assert (estimate.low, estimate.high) == (0.0, math.inf)
 
 

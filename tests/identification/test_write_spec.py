@@ -95,7 +95,7 @@ def test_the_range_is_rounded_outwards(silicone):
     spec = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), silicone, "soft", None))
     soft = spec.environments["soft"]
     low, high = soft.stiffness.range
-    (wide,) = silicone.chosen.ranges
+    (wide,) = silicone.model.ranges
     assert low.exact <= Fraction(wide.low) < Fraction(wide.high) <= high.exact
     assert low.exact <= soft.stiffness.nominal.exact <= high.exact
     assert float(low.exact) == pytest.approx(wide.low, rel=2e-5)

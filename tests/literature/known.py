@@ -16,7 +16,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
-from nrs_design.thesis.switching import to_force_coordinates
+from nrs_design.thesis.switching import replace_by_force
 from tests.loop.support import MOTION
 from tests.support import holds
 
@@ -74,7 +74,7 @@ def robot(name, Mt, contacts, coordinates="deflection") -> SwitchedSystem:
         contact = KelvinVoigt(parse_exact(k), zero)
         rows = velocity_mode(MOTION, Admittance(parse_exact(Mt), parse_exact(Bt)), contact)
         if coordinates == "force":
-            rows = to_force_coordinates(rows, MOTION, contact)
+            rows = replace_by_force(rows, MOTION, contact)
         modes.append(Mode(f"k={k} Bt={Bt}", RationalMatrix.from_rows(rows)))
     states = tuple(f"x{i}" for i in range(len(modes[0].A.numerators)))
     return SwitchedSystem(

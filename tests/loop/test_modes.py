@@ -15,7 +15,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.loop.modes import position_mode, velocity_mode, with_idle
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.thesis.switching import to_force_coordinates
+from nrs_design.thesis.switching import replace_by_force
 from tests.loop.support import LOOP, MOTION, objects, polynomial, positive, stable
 from tests.tables import by_rows
 
@@ -30,7 +30,7 @@ class TestPublished:
     def test_matrices_of_thesis_6322(self, Bt, entry):
         """With -1618.80, as errata have it. The print's last row is good to five digits."""
         law = Admittance(F("0.01"), F(Bt))
-        rows = to_force_coordinates(velocity_mode(MOTION, law, PRINTED), MOTION, PRINTED)
+        rows = replace_by_force(velocity_mode(MOTION, law, PRINTED), MOTION, PRINTED)
         assert rows[0] == [0, 1, 0, 0]
         assert rows[1] == [F("-1618.80"), F("-56.89"), -1, 0]
         assert rows[2] == [0, 0, entry, 100]
@@ -49,7 +49,7 @@ class TestPublished:
     def test_eigenvalues(self, Bt, eigenvalues, coordinates):
         rows = velocity_mode(MOTION, Admittance(F("0.01"), F(Bt)), SOFT)
         if coordinates == "force":
-            rows = to_force_coordinates(rows, MOTION, SOFT)
+            rows = replace_by_force(rows, MOTION, SOFT)
         found = np.linalg.eigvals(np.array(rows, dtype=float))
         wanted = np.array(eigenvalues)
         for value in wanted:
@@ -63,7 +63,7 @@ class TestImpedance:
     def test_coordinates_are_similar(self, Mt, Bt, k, b, massless):
         law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
         rows = velocity_mode(MOTION, law, contact)
-        assert polynomial(to_force_coordinates(rows, MOTION, contact)) == polynomial(rows)
+        assert polynomial(replace_by_force(rows, MOTION, contact)) == polynomial(rows)
 
     def test_without_inertia(self):
         rows = velocity_mode(MOTION, Admittance(F(0), F(2)), KelvinVoigt(F(43), F(0)))

@@ -32,7 +32,7 @@ def computed(found):
         case str():
             return complex(found)
         case {"no longer": value}:
-            return Recomputed(value, holds=False)
+            return Recomputed(value, is_confirmed=False)
     return tuple(found) if isinstance(found, list) else found
 
 
@@ -54,7 +54,7 @@ def test_words_that_no_longer_hold_are_a_drift(verdict):
     for found in (True, Recomputed("v"), "v"):
         kept = row(verdict, "p", found, value="v")
         assert (kept.verdict, kept.value, kept.deviation) == (verdict, "v", None)
-    for found in (False, Recomputed("v", holds=False)):
+    for found in (False, Recomputed("v", is_confirmed=False)):
         assert row(verdict, "p", found, value="v").verdict == "drift"
 
 

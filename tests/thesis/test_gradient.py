@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import Order
-from nrs_design.thesis.switching import FEW, UPDATES, pairs, run
+from nrs_design.thesis.switching import FEW_UPDATES, UPDATES, pairs, run
 
 PAIRS = dict(pairs())
 RADII = [10.0**power for power in range(13)]
@@ -24,8 +24,8 @@ def test_it_ends_on_position_and_force():
 
 @pytest.mark.parametrize("section", ["6.3.2.2", "6.4.1"])
 def test_it_does_not_end_within_a_few_updates_on_the_others(section):
-    found = run(PAIRS[section], updates=FEW)
-    assert (found.Q, found.updates) == (None, FEW)
+    found = run(PAIRS[section], updates=FEW_UPDATES)
+    assert (found.Q, found.updates) == (None, FEW_UPDATES)
 
 
 @pytest.mark.slow

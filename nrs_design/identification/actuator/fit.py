@@ -116,11 +116,11 @@ def _solve(records: Sequence[SignalRecord], tau: float, delay: float) -> tuple[f
 def _regressors(record: SignalRecord, tau: float, delay: float) -> tuple[Array, Array]:
     """Return the outputs of a unit gain for command and friction, (n, 2), and the measured one."""
     motor = MotorModel(1.0, tau, None, delay)
-    held, _ = motor.hold(record)
-    against = replace(held, command=-np.sign(motor.lags.velocity(held, held.command)[:-1]))
-    columns = [motor.forced(record, inputs, None) for inputs in (held, against)]
-    both = motor.remove_initial_state(record, np.column_stack([*columns, record.output]))
-    return both[:, :2], both[:, 2]
+    zoh, _ = motor.hold(record)
+    against = replace(zoh, command=-np.sign(motor.lags.velocity(zoh, zoh.command)[:-1]))
+    columns = [motor.forced(record, inputs, None) for inputs in (zoh, against)]
+    outputs = motor.remove_initial_state(record, np.column_stack([*columns, record.output]))
+    return outputs[:, :2], outputs[:, 2]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,8 +150,8 @@ class ActuatorFit:
     def ranges(self) -> tuple[Estimate, Estimate]:
         """Gain and time constant between ends that hold with 95 % for both together."""
         logarithms = np.log([self.gain.value, self.time_constant.value])
-        known = replace(self.uncertainty, covariance=self.uncertainty.covariance[:2, :2])
-        gain, time_constant = known.estimates(logarithms, joint_level(2))
+        fit_uncertainty = replace(self.uncertainty, covariance=self.uncertainty.covariance[:2, :2])
+        gain, time_constant = fit_uncertainty.estimates(logarithms, joint_level(2))
         return gain, time_constant
 
 
@@ -180,22 +180,22 @@ def fit_in_time(records: Sequence[SignalRecord], start: MotorModel) -> ActuatorF
             remedy="check the records, or give livelier ones",
         )
     motor, left = start.replace_parameters(x), errors(x)
-    known = _uncertainty(records, slopes(x), left)
-    gain, time_constant, *friction = known.estimates(x)[:-1]
+    fit_uncertainty = _uncertainty(records, slopes(x), left)
+    gain, time_constant, *friction = fit_uncertainty.estimates(x)[:-1]
     return ActuatorFit(
         gain=gain,
         time_constant=time_constant,
         friction=friction[0] if friction else None,
-        uncertainty=known,
-        dead_time=_dead_time(motor.delay, known, longest_delay(records)),
+        uncertainty=fit_uncertainty,
+        dead_time=_dead_time(motor.delay, fit_uncertainty, longest_delay(records)),
         motor=motor,
         errors=left,
     )
 
 
-def _dead_time(delay: float, known: Uncertainty, longest: float) -> Estimate | None:
+def _dead_time(delay: float, fit_uncertainty: Uncertainty, longest: float) -> Estimate | None:
     """Return a dead time, never below zero; None for one that may be beyond the longest."""
-    half = student_quantile(known.degrees) * float(known.errors[-1])
+    half = student_quantile(fit_uncertainty.degrees) * float(fit_uncertainty.errors[-1])
     ends = (delay, delay - half, delay + half)
     return Estimate(*(max(end, 0.0) for end in ends)) if ends[-1] <= longest else None
 

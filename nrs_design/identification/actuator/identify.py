@@ -128,21 +128,21 @@ def _fit(records: Sequence[SignalRecord]) -> ActuatorFit:
             return fit_in_time(records, frictionless)
         friction = _GUESS * max(float(np.abs(record.command).max()) for record in records)
     try:
-        found = fit_in_time(records, replace(start, friction=friction))
+        fit = fit_in_time(records, replace(start, friction=friction))
     except DataError:
         return fit_in_time(records, frictionless)
-    if found.uncertainty.whiteness >= WHITE and found.tells_friction:
-        return found
+    if fit.uncertainty.whiteness >= WHITE and fit.tells_friction:
+        return fit
     try:
-        return min(found, fit_in_time(records, frictionless), key=lambda fit: fit.bic)
+        return min(fit, fit_in_time(records, frictionless), key=lambda fit: fit.bic)
     except DataError:
-        return found
+        return fit
 
 
-def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator[str]:
+def find_doubts(records: Sequence[SignalRecord], fit: ActuatorFit) -> Iterator[str]:
     """Yield what speaks against a fit in time, with its evidence."""
-    motor, step = found.motor, min(record.step for record in records)
-    if motor.delay < -2 * float(found.uncertainty.errors[-1]):
+    motor, step = fit.motor, min(record.step for record in records)
+    if motor.delay < -2 * float(fit.uncertainty.errors[-1]):
         yield (
             f"the output comes {-motor.delay:.3g} s before its command "
             f"({-motor.delay / step:.2g} samples): the clocks of the columns "
@@ -154,12 +154,12 @@ def find_doubts(records: Sequence[SignalRecord], found: ActuatorFit) -> Iterator
             "gain is that of this level"
         )
     names = ["gain", "time constant"] + ["friction"] * (motor.friction is not None)
-    for name, error in zip(names, found.uncertainty.errors.tolist(), strict=False):
+    for name, error in zip(names, fit.uncertainty.errors.tolist(), strict=False):
         if error > _UNSURE:
             yield f"the records do not determine the {name}: its relative error is {error:.2g}"
     motion = np.sqrt(sum(float(np.sum((r.output - r.output.mean()) ** 2)) for r in records))
-    missed = float(np.linalg.norm(found.errors)) / motion
-    if found.uncertainty.whiteness < WHITE and missed > _MISSED:
+    missed = float(np.linalg.norm(fit.errors)) / motion
+    if fit.uncertainty.whiteness < WHITE and missed > _MISSED:
         yield (
             f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise, "
             "as of a second lag, a limit or an offset of the command, or backlash"

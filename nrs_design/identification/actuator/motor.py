@@ -9,8 +9,8 @@ from typing import Self
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.held import HeldCommand, Lags
 from nrs_design.identification.numeric import Array, reject
+from nrs_design.identification.zero_order_hold import HeldCommand, Lags
 
 # Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
 _DIFFERENCE = 1e-5
@@ -20,7 +20,7 @@ _MOVES = 0.2
 
 
 def friction_shape(
-    held: HeldCommand, gain: float, tau: float, friction: float, velocity: float = 0.0
+    zoh: HeldCommand, gain: float, tau: float, friction: float, velocity: float = 0.0
 ) -> Array:
     """Return friction over its largest value, the mean over each interval, shape (m - 1,).
 
@@ -28,14 +28,14 @@ def friction_shape(
     while the command is below the friction (in units of the command), the motor sticks, and the
     friction is just the command. A reversal within an interval is found exactly.
     """
-    decays = np.exp(-held.steps / tau)
+    decays = np.exp(-zoh.steps / tau)
     factor = (1 - decays) * gain
     steps = zip(
-        held.steps.tolist(),
-        held.command.tolist(),
+        zoh.steps.tolist(),
+        zoh.command.tolist(),
         decays.tolist(),
-        (factor * (held.command - friction)).tolist(),
-        (factor * (held.command + friction)).tolist(),
+        (factor * (zoh.command - friction)).tolist(),
+        (factor * (zoh.command + friction)).tolist(),
         strict=True,
     )
     shape = []
@@ -57,8 +57,8 @@ def friction_shape(
         if abs(command) <= friction:
             velocity, after = 0.0, command / friction
         else:
-            turned = gain * (command + friction * direction)
-            velocity, after = turned * -math.expm1((stop - step) / tau), -direction
+            new_target = gain * (command + friction * direction)
+            velocity, after = new_target * -math.expm1((stop - step) / tau), -direction
         shape.append((stop * direction + (step - stop) * after) / step)
         direction = -direction
     return np.array(shape)
@@ -97,20 +97,20 @@ class MotorModel:
 
     def hold(self, record: SignalRecord) -> tuple[HeldCommand, Array | None]:
         """Return the command of a record as it acts, and the shape of the friction."""
-        held = HeldCommand.of(record.time, record.command, self.delay)
+        zoh = HeldCommand.build(record.time, record.command, self.delay)
         if self.friction is None:
-            return held, None
+            return zoh, None
         first, fast = record.first_velocity, self.gain * float(np.abs(record.command).max())
         # A little of it may be noise.
         first = first if abs(first) > _MOVES * fast else 0.0
-        return held, friction_shape(held, self.gain, self.time_constant, self.friction, first)
+        return zoh, friction_shape(zoh, self.gain, self.time_constant, self.friction, first)
 
-    def forced(self, record: SignalRecord, held: HeldCommand, shape: Array | None) -> Array:
+    def forced(self, record: SignalRecord, zoh: HeldCommand, shape: Array | None) -> Array:
         """Return the output from rest at the samples of a record, shape (n,)."""
         friction = 0.0 if shape is None or self.friction is None else self.friction * shape
-        inputs = self.gain * (held.command - friction)
+        inputs = self.gain * (zoh.command - friction)
         output = self.lags.angle if record.is_angle else self.lags.velocity
-        return output(held, inputs)[held.samples]
+        return output(zoh, inputs)[zoh.samples]
 
     def free(self, record: SignalRecord) -> Array:
         """Return what initial angle and velocity add, shape (n, p)."""

@@ -44,13 +44,13 @@ def identify_records(
     """Identify what records are of; see `nrs_design.api.identify`."""
     _check(files, kind, law)
     named_ours = {_DELAY_COLUMNS.get(k, k) if kind == "delay" else k: v for k, v in columns.items()}
-    mapping = parse_mapping([f"{ours}={theirs}" for ours, theirs in named_ours.items()])
+    mapping = parse_mapping([f"{standard}={foreign}" for standard, foreign in named_ours.items()])
     data = [Path(file) if isinstance(file, str | Path) else file for file in files]
     view = _KINDS[kind](data, mapping, law)
     result = view.result
     return Identification(
         kind=kind,
-        chosen=view.chosen,
+        chosen=view.method,
         reason=view.reason,
         ranges={
             name: FittedRange(estimate.value, estimate.low, estimate.high, unit)

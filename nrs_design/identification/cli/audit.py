@@ -76,8 +76,8 @@ def _print(judgement: RunJudgement, name: str, reason: str) -> None:
     if first := first_violation(judgement):
         say(first)
     for c in judgement.checks:
-        allowed = f" (allowed: {c.allowed})" if c.allowed else ""
-        say(f"{c.name}: {c.status}: {c.measured}{allowed}")
+        limits = f" (allowed: {c.allowed})" if c.allowed else ""
+        say(f"{c.name}: {c.status}: {c.measured}{limits}")
     for basis in dict.fromkeys(c.basis for c in judgement.checks if c.basis):
-        of = ", ".join(c.name for c in judgement.checks if c.basis == basis)
-        detail(f"bound of {of}: {basis}")
+        names = ", ".join(c.name for c in judgement.checks if c.basis == basis)
+        detail(f"bound of {names}: {basis}")

@@ -83,13 +83,13 @@ class Destinations:
             for doubt in doubts if merged is None else merged.doubts:
                 insist(f"warning: {doubt}")
         code = exit_codes.INCONCLUSIVE if doubts else exit_codes.PROVED
-        written = {} if spec is None else {"not_written": refused and error_summary(refused)}
+        spec_facts = {} if spec is None else {"not_written": refused and error_summary(refused)}
         if refused is not None:
             code = exit_codes.USAGE
         elif spec is not None and merged is not None:
             _write_spec(spec, merged)
             code = exit_codes.INCONCLUSIVE if merged.fails_gate else code
-        return Answer(lambda: view.document | written, lambda: _show(view), code)
+        return Answer(lambda: view.document | spec_facts, lambda: _show(view), code)
 
 
 def _show(view: FindingView) -> None:
@@ -114,12 +114,12 @@ def _write_spec(spec: LoadedSpec, merged: Merged) -> None:
     from nrs_design.identification.spec_document import spec_changes
     from nrs_design.output import write_output
 
-    changed, lost = spec_changes(spec, merged.text)
+    changed, removals = spec_changes(spec, merged.text)
     write_output(spec.path, merged.text)
     for line in changed:
         note(f"changed: {line}")
     # What the user wrote, and is gone, no option silences.
-    for line in lost:
+    for line in removals:
         insist(f"warning: no longer there: {line}")
     then = f"run nrs-design gate {spec.path} to prove it"
     if merged.fails_gate:

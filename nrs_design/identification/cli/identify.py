@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, TypeVar
 
 import typer
 
@@ -18,6 +18,7 @@ from nrs_design.identification.cli.destinations import Destinations
 from nrs_design.identification.errors import DataError
 from nrs_design.models.contact import LAWS
 from nrs_design.spec.kinds import ANGLE, LENGTH, LEVER_ARM
+from nrs_design.spec.provenance import Coverage
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
@@ -25,18 +26,16 @@ ColumnMap = Annotated[
     list[str] | None,
     typer.Option("--map", metavar="OURS=THEIRS", help="Foreign column name, as in force_N=Fz."),
 ]
-WriteTo = Annotated[
+SpecOption = Annotated[
     Path | None,
     typer.Option("--write", metavar="SPEC", help="Merge the result into this spec file."),
 ]
-ReportTo = Annotated[
+ReportFile = Annotated[
     Path | None, typer.Option("--report", metavar="FILE", help="Write a page with figures (.html).")
 ]
 
 # In m; longer arms were meant in mm.
 _LONGEST_ARM = 10.0
-# Coverage of the range in a spec.
-Covers = Literal["confidence", "tolerance", "prediction"]
 
 
 class ModelOption(StrEnum):
@@ -85,9 +84,11 @@ def tissue(
             help="What is used of a record: start, end (s), contact (auto, given), negate (true).",
         ),
     ] = None,
-    covers: Annotated[
-        Covers,
-        typer.Option(help="What the range holds: the mean, 95 % of specimens, or the next one."),
+    coverage: Annotated[
+        Coverage,
+        typer.Option(
+            "--covers", help="What the range holds: the mean, 95 % of specimens, or the next one."
+        ),
     ] = "confidence",
     preload: Annotated[
         str | None,
@@ -97,11 +98,11 @@ def tissue(
         str | None,
         typer.Option(metavar="LENGTH", help="Distance from pivot to contact, as in '0.24 m'."),
     ] = None,
-    write: WriteTo = None,
+    write: SpecOption = None,
     environment: Annotated[
         str | None, typer.Option(metavar="NAME", help="Environment of the spec to write to.")
     ] = None,
-    report: ReportTo = None,
+    report: ReportFile = None,
     date: Date = None,
 ) -> Answer:
     """Fit five tissue laws to one or several records, compare them and choose one.
@@ -138,10 +139,10 @@ def tissue(
             records,
             law,
             preparation,
-            covers,
+            coverage,
             deflections,
             progress=step,
-            declared=requested is None,
+            is_declared=requested is None,
         )
     view = view_tissue(result, arm)
     return outputs.deliver(view, lambda spec: merge_tissue(spec, result, environment, lever_arm))
@@ -152,8 +153,8 @@ def tissue(
 def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
-    write: WriteTo = None,
-    report: ReportTo = None,
+    write: SpecOption = None,
+    report: ReportFile = None,
     date: Date = None,
 ) -> Answer:
     """Fit gain, time constant, Coulomb friction and dead time of a motor that follows a velocity.
@@ -174,7 +175,7 @@ def actuator(
     with progress("fitting"):
         result = identify_actuator(records)
     view = view_actuator(result)
-    return outputs.deliver(view, partial(merge_actuator, found=result))
+    return outputs.deliver(view, partial(merge_actuator, result=result))
 
 
 @identify.command("delay")
@@ -184,8 +185,8 @@ def delay(
     command: Annotated[str, typer.Option(metavar="COLUMN", help="What was sent.")],
     measured: Annotated[str, typer.Option(metavar="COLUMN", help="What follows.")],
     columns: ColumnMap = None,
-    write: WriteTo = None,
-    report: ReportTo = None,
+    write: SpecOption = None,
+    report: ReportFile = None,
     date: Date = None,
 ) -> Answer:
     """Find how late a measured signal follows a command, in seconds and in samples.
@@ -211,7 +212,7 @@ def delay(
     with progress("fitting"):
         result = identify_delay(record)
     view = view_delay(result)
-    return outputs.deliver(view, partial(merge_sampling, found=result))
+    return outputs.deliver(view, partial(merge_sampling, result=result))
 
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:

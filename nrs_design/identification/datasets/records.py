@@ -201,9 +201,9 @@ def check_time(table: MeasurementTable, time: Array) -> tuple[slice, str]:
     if not (pauses := int(find_gaps(time).sum())):
         return rows, ""
     left = counted(len(time) - (rows.stop - rows.start), "row")
-    used = span(time[rows.start] - time[0], time[rows.stop - 1] - time[0], "s")
+    times = span(time[rows.start] - time[0], time[rows.stop - 1] - time[0], "s")
     return rows, (
-        f"{counted(pauses, 'pause')} in the record: its longest stretch is used ({used}), and "
+        f"{counted(pauses, 'pause')} in the record: its longest stretch is used ({times}), and "
         f"{left} left out; a stretch that is saved as a file is a record, too"
     )
 
@@ -262,5 +262,5 @@ def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     """Check that a column is not constant, but for the rounding of its numbers."""
     change = float(np.ptp(values))
     if change <= max(SMALLEST, _ROUNDING_UNITS * np.finfo(float).eps * float(np.abs(values).max())):
-        by = f" by more than {change:.1g}, which is rounding" if change else ""
-        table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")
+        amount = f" by more than {change:.1g}, which is rounding" if change else ""
+        table.fail(f"the {name} never changes{amount}", 0, "record a motion, from before it begins")

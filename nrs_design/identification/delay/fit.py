@@ -11,9 +11,9 @@ from math import exp
 import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord
-from nrs_design.identification.held import HeldCommand, Lags
 from nrs_design.identification.numeric import Array, Rows, bic, column_sizes, reject, search
 from nrs_design.identification.statistics import Uncertainty, uncertainty
+from nrs_design.identification.zero_order_hold import HeldCommand, Lags
 
 # Half width, in samples, of the search for a whole number of them about the peak of correlation.
 _COPY_RANGE = 8
@@ -41,8 +41,9 @@ class SmoothCopy(AbstractFollower):
         """Return the command and a constant."""
         from scipy.interpolate import CubicSpline
 
-        at = np.clip(record.time - delay, record.time[0], record.time[-1])
-        return np.column_stack([CubicSpline(record.time, record.command)(at), np.ones_like(at)])
+        times = np.clip(record.time - delay, record.time[0], record.time[-1])
+        spline = CubicSpline(record.time, record.command)
+        return np.column_stack([spline(times), np.ones_like(times)])
 
 
 class HeldCopy(AbstractFollower):
@@ -51,8 +52,8 @@ class HeldCopy(AbstractFollower):
     def columns(self, record: SignalRecord, delay: float) -> Array:
         """Return the command and a constant."""
         rows = np.arange(len(record.time)) - round(delay / record.step)
-        at = np.clip(rows, 0, len(record.time) - 1)
-        return np.column_stack([record.command[at], np.ones(len(at))])
+        index = np.clip(rows, 0, len(record.time) - 1)
+        return np.column_stack([record.command[index], np.ones(len(index))])
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,8 @@ class Lagged(AbstractFollower):
 
     def columns(self, record: SignalRecord, delay: float) -> Array:
         """Return output, constant (a drift for an integral) and initial states."""
-        lags, held = self.lags(*map(exp, self.shape)), _hold(record, delay)
-        output = (lags.angle if self.angle else lags.velocity)(held, held.command)[held.samples]
+        lags, zoh = self.lags(*map(exp, self.shape)), _hold(record, delay)
+        output = (lags.angle if self.angle else lags.velocity)(zoh, zoh.command)[zoh.samples]
         constant = record.time if self.angle else np.ones_like(output)
         return np.column_stack([output, constant, lags.free(record.time, angle=self.angle)])
 
@@ -73,7 +74,7 @@ class Lagged(AbstractFollower):
 @lru_cache(maxsize=32)
 def _hold(record: SignalRecord, delay: float) -> HeldCommand:
     """Return the delayed command; several shapes are tried at each delay."""
-    return HeldCommand.of(record.time, record.command, delay)
+    return HeldCommand.build(record.time, record.command, delay)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,27 +151,27 @@ def fit_delay(
     scale = np.array([1.0, *[0.5] * len(follower.shape)])
     start = np.array([delay / record.step, *follower.shape])
     x, _ = search(errors, sensitivities, start, scale)
-    error, J, (model, late) = errors(x), sensitivities(x), shaped(x)
-    fitted, solution = _solve(record, model.columns(record, late), rows)
+    error, J, (model, best_delay) = errors(x), sensitivities(x), shaped(x)
+    fitted, solution = _solve(record, model.columns(record, best_delay), rows)
     known = uncertainty(J, error)
-    return DelayFit(record, model, late, known, J[:, 0], error, rows, fitted, solution)
+    return DelayFit(record, model, best_delay, known, J[:, 0], error, rows, fitted, solution)
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     """Find the whole number of samples by which a copy is late, near a delay in s."""
-    follower, near = HeldCopy(), round(delay / record.step)
+    follower, start = HeldCopy(), round(delay / record.step)
 
     def key(samples: int) -> tuple[float, int]:
         error = fit_errors(record, follower, samples * record.step, rows)
-        return float(error @ error), abs(samples - near)
+        return float(error @ error), abs(samples - start)
 
-    best = min(range(near - _COPY_RANGE, near + _COPY_RANGE + 1), key=key)
-    before, at, after = (follower.columns(record, (best + k) * record.step) for k in (-1, 0, 1))
-    fitted, solution = _solve(record, at, rows)
+    best = min(range(start - _COPY_RANGE, start + _COPY_RANGE + 1), key=key)
+    before, center, after = (follower.columns(record, (best + k) * record.step) for k in (-1, 0, 1))
+    fitted, solution = _solve(record, center, rows)
     slope = (after - before)[rows] @ solution / 2
     error = record.output[rows] - fitted[rows]
-    known, late = uncertainty(slope[:, None], error), best * record.step
-    return DelayFit(record, follower, late, known, slope, error, rows, fitted, solution)
+    known, best_delay = uncertainty(slope[:, None], error), best * record.step
+    return DelayFit(record, follower, best_delay, known, slope, error, rows, fitted, solution)
 
 
 def _solve(record: SignalRecord, columns: Array, rows: Rows) -> tuple[Array, Array]:

@@ -30,7 +30,6 @@ from nrs_design.identification.delay.fit import (
     fit_held,
 )
 from nrs_design.identification.errors import DataError
-from nrs_design.identification.held import Lags
 from nrs_design.identification.numeric import Array, Rows
 from nrs_design.identification.statistics import (
     WHITE,
@@ -39,6 +38,7 @@ from nrs_design.identification.statistics import (
     joint_level,
     student_quantile,
 )
+from nrs_design.identification.zero_order_hold import Lags
 
 # Longest delay in the search, as a part of the record.
 _LONGEST = 0.1
@@ -61,7 +61,7 @@ _RELATED = 0.2
 _MISSED = 0.02
 _UNEXPLAINED = 0.1
 # A command with less of its power outside one frequency shows one phase only.
-_OTHER_POWER = 0.01
+_MULTITONE_POWER = 0.01
 # A command is smooth between its samples if a spline through every other sample misses those
 # between by less than this part of the change from sample to sample.
 _SMOOTH = 0.05
@@ -80,7 +80,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
     """What a record says about a delay."""
 
     fits: tuple[DelayFit, ...]  # One for each model, a copy of the command first
-    chosen: DelayFit  # The simplest fit whose BIC none clearly beats
+    fit: DelayFit  # The simplest fit whose BIC none clearly beats
     # Lag in s at which both columns are most alike, lag of the dynamics included, and their
     # correlation there.
     peak: tuple[float, float]
@@ -102,7 +102,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
     @cached_property
     def interval(self) -> Estimate:
         """The delay in samples with its 95 % interval, which may be below zero."""
-        fit = self.chosen
+        fit = self.fit
         if isinstance(fit.follower, HeldCopy):
             return _held_interval(fit, fit.rows, joint_level(1))
         half = student_quantile(fit.uncertainty.degrees) * float(fit.uncertainty.errors[0])
@@ -118,8 +118,8 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
         Where a sample is the least width of an interval, so is the rest above zero.
         """
         low = max(self.interval.low, 0.0)
-        high = max(self.interval.high, low + _hidden(self.chosen), 0.0)
-        return Estimate(max(self.chosen.samples, 0.0), low, high)
+        high = max(self.interval.high, low + _hidden(self.fit), 0.0)
+        return Estimate(max(self.fit.samples, 0.0), low, high)
 
     @property
     def delay(self) -> Estimate:
@@ -132,12 +132,12 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
 
         The intervals hold at 95 % for all parts together.
         """
-        return tuple(_parts(self.chosen))
+        return tuple(_parts(self.fit))
 
     @cached_property
     def one_frequency(self) -> bool:
         """Whether the command has one frequency, which shows one phase only."""
-        return _part_of_other_frequencies(self.record) < _OTHER_POWER
+        return _part_of_other_frequencies(self.record) < _MULTITONE_POWER
 
     @cached_property
     def delay_range(self) -> tuple[Fraction, Fraction]:
@@ -149,7 +149,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
         estimates = [self.samples, *(part for _, part in self.parts)]
         if self.one_frequency:
             estimates.append(Estimate(0.0, 0.0, 0.0))
-        if self.one_frequency or self.chosen.uncertainty.whiteness < WHITE:
+        if self.one_frequency or self.fit.uncertainty.whiteness < WHITE:
             estimates += [part for _, part in _parts(self.fits[0])]
         ends = min(e.low for e in estimates), max(e.high for e in estimates)
         low, high = (Fraction(max(end, 0.0)) * Fraction(self.record.step) for end in ends)
@@ -168,8 +168,8 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
     @property
     def is_lag(self) -> bool:
         """Whether dynamics lie between the columns: they leave nothing but noise."""
-        lagged = isinstance(self.chosen.follower, Lagged)
-        return lagged and self.chosen.uncertainty.whiteness >= WHITE
+        lagged = isinstance(self.fit.follower, Lagged)
+        return lagged and self.fit.uncertainty.whiteness >= WHITE
 
     @property
     def untold(self) -> str | None:
@@ -187,7 +187,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
             f"the record does not tell when within a sample {command} changed: no interval is "
             "below a sample"
         )
-        if not _hidden(self.chosen):
+        if not _hidden(self.fit):
             rests = f"{command} is smooth between samples: parts of a sample are told"
         return (self.record.pauses, rests) if self.record.pauses else (rests,)
 
@@ -199,12 +199,12 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
     @property
     def caveats(self) -> tuple[str, ...]:
         """Doubts, what pauses leave out, and dynamics beside which a delay is more than an age."""
-        said = (*self.doubts, self.record.pauses) if self.record.pauses else self.doubts
-        if not isinstance(self.chosen.follower, Lagged):
-            return said
+        texts = (*self.doubts, self.record.pauses) if self.record.pauses else self.doubts
+        if not isinstance(self.fit.follower, Lagged):
+            return texts
         command, output = self.record.names
-        name = self.chosen.follower.name
-        return (*said, f"{name} fits better between {command} and {output} than a mere delay")
+        name = self.fit.follower.name
+        return (*texts, f"{name} fits better between {command} and {output} than a mere delay")
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
@@ -232,24 +232,24 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     # its interval for the delay would not hold. So the simplest is chosen.
     lowest = min(fit.bic for fit in fits)
     good = [fit for fit in fits if fit.bic <= lowest + _CLEARLY]
-    chosen = min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
-    found = DelayIdentification((record,), fits, chosen, peak)
-    _check_explained(found)
-    return found
+    best = min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
+    result = DelayIdentification((record,), fits, best, peak)
+    _check_explained(result)
+    return result
 
 
-def _check_explained(found: DelayIdentification) -> None:
+def _check_explained(result: DelayIdentification) -> None:
     """Refuse a model that misses much of the motion: its delay may be any.
 
     For a held command, the part of a sample is open: to be a sample late misses as much as the
     motion changes in a sample.
     """
-    record, fit, allowed = found.record, found.chosen, _UNEXPLAINED
-    if not found.smooth:
+    record, fit, limit = result.record, result.fit, _UNEXPLAINED
+    if not result.smooth:
         motion = fit.measured - fit.measured.mean()
         change = np.linalg.norm(np.diff(fit.measured)) / np.linalg.norm(motion)
-        allowed = max(allowed, float(change))
-    if fit.missed_part <= allowed or fit.uncertainty.whiteness >= WHITE:
+        limit = max(limit, float(change))
+    if fit.missed_part <= limit or fit.uncertainty.whiteness >= WHITE:
         return
     raise DataError(
         f"no delay, with or without a lag, explains {record.names[1]} by {record.names[0]}: the "
@@ -276,9 +276,9 @@ def is_smooth(record: SignalRecord) -> bool:
 
     time, command = record.time, record.command
     # At both ends, a spline is free.
-    between = (CubicSpline(time[::2], command[::2])(time[1::2]) - command[1::2])[2:-2]
-    moved = np.diff(command)
-    return 2 * float(between @ between) <= _SMOOTH**2 * float(moved @ moved)
+    errors = (CubicSpline(time[::2], command[::2])(time[1::2]) - command[1::2])[2:-2]
+    steps = np.diff(command)
+    return 2 * float(errors @ errors) <= _SMOOTH**2 * float(steps @ steps)
 
 
 def _fitted_rows(record: SignalRecord, lag: float) -> Rows:
@@ -304,24 +304,24 @@ def _hidden(fit: DelayFit) -> float:
 
 
 def _held_interval(fit: DelayFit, rows: Rows, confidence: float) -> Estimate:
-    """Return the best whole number of samples, and all delays that the rows do not reject.
+    """Return the best whole number of samples, and all lags that the rows do not reject.
 
     That a copy is k samples late says of its delay that it is between k - 1 and k + 1: the command
     began up to a sample before it was logged, and its copy, too.
     """
     from scipy.special import chdtri
 
-    late = round(fit.samples) + np.arange(-_PART_RANGE, _PART_RANGE + 1)
+    lags = round(fit.samples) + np.arange(-_PART_RANGE, _PART_RANGE + 1)
     measured: Array = fit.record.output[rows]
-    errors = [measured - fit.output(float(k))[rows] for k in late]
+    errors = [measured - fit.output(float(k))[rows] for k in lags]
     powers = np.array([float(error @ error) for error in errors])
     best = int(np.argmin(powers))
     # Neighbours that are alike count less; and without noise, rounding decides nothing.
     count = max(independent(errors[best]), 1.0)
     lowest = max(float(powers[best]), EXACT * float(np.sum(measured**2)))
-    kept = late[powers <= lowest * np.exp(float(chdtri(1, 1 - confidence)) / count)]
-    low, high = float(min(kept, default=late[best])), float(max(kept, default=late[best]))
-    return Estimate(float(late[best]), low - 1.0, high + 1.0)
+    likely = lags[powers <= lowest * np.exp(float(chdtri(1, 1 - confidence)) / count)]
+    low, high = (float(min(likely, default=lags[best])), float(max(likely, default=lags[best])))
+    return Estimate(float(lags[best]), low - 1.0, high + 1.0)
 
 
 def correlation_peak(record: SignalRecord) -> tuple[float, float]:
@@ -331,15 +331,15 @@ def correlation_peak(record: SignalRecord) -> tuple[float, float]:
     columns that drift.
     """
     time = record.time
-    even = np.linspace(time[0], time[-1], len(time))
+    grid = np.linspace(time[0], time[-1], len(time))
     longest = max(int(_LONGEST * len(time)), 2)
     lags = np.arange(-longest, longest + 1)
-    u, y = (np.interp(even, time, values) for values in (record.command, record.output))
+    u, y = (np.interp(grid, time, values) for values in (record.command, record.output))
     peaks = []
     for a, b in ((u, y), (np.diff(u), np.diff(y))):
         alike = _correlations(a - np.mean(a), b - np.mean(b), lags)
         best = int(np.argmax(np.abs(alike)))
-        peaks.append((float(lags[best]) * float(even[1] - even[0]), float(alike[best])))
+        peaks.append((float(lags[best]) * float(grid[1] - grid[0]), float(alike[best])))
     return max(peaks, key=lambda pair: abs(pair[1]))
 
 
@@ -406,24 +406,24 @@ def _parts(fit: DelayFit) -> Iterator[tuple[float, Estimate]]:
         if isinstance(fit.follower, HeldCopy):
             yield middle, _held_interval(fit, rows, joint_level(_PARTS))
             continue
-        own, power = _own_delay(fit, rows)
+        delay, power = _own_delay(fit, rows)
         if power:
             half = quantile * math.sqrt(noise / power)
-            yield middle, Estimate(own, own - half, own + half + _hidden(fit))
+            yield middle, Estimate(delay, delay - half, delay + half + _hidden(fit))
 
 
 def _own_delay(fit: DelayFit, rows: Rows) -> tuple[float, float]:
     """Return the delay in samples that fits some rows best, and how much they tell about it."""
-    own, power = fit.samples, 0.0
+    delay, power = fit.samples, 0.0
     for _ in range(_PART_STEPS):
-        late, early = (fit.output(own + d)[rows] for d in (_PART_SHIFT, -_PART_SHIFT))
-        slope = (late - early) / (2 * _PART_SHIFT)
+        later_output, early = (fit.output(delay + d)[rows] for d in (_PART_SHIFT, -_PART_SHIFT))
+        slope = (later_output - early) / (2 * _PART_SHIFT)
         power = float(slope @ slope)
         if not power:
             break
-        error = fit.record.output[rows] - fit.output(own)[rows]
-        own += float(np.clip(slope @ error / power, -2.0, 2.0))
-    return own, power
+        error = fit.record.output[rows] - fit.output(delay)[rows]
+        delay += float(np.clip(slope @ error / power, -2.0, 2.0))
+    return delay, power
 
 
 def _part_of_other_frequencies(record: SignalRecord) -> float:
@@ -431,10 +431,10 @@ def _part_of_other_frequencies(record: SignalRecord) -> float:
     from scipy.optimize import minimize_scalar
 
     time, command = record.time, record.command - record.command.mean()
-    count, even = len(command), np.linspace(time[0], time[-1], len(command))
-    spectrum = np.abs(np.fft.rfft(np.interp(even, time, command)))
-    bin_ = 1 / (count * float(even[1] - even[0]))
-    near = bin_ * max(int(np.argmax(spectrum[1:])) + 1, 1)
+    count, grid = len(command), np.linspace(time[0], time[-1], len(command))
+    spectrum = np.abs(np.fft.rfft(np.interp(grid, time, command)))
+    bin_ = 1 / (count * float(grid[1] - grid[0]))
+    peak = bin_ * max(int(np.argmax(spectrum[1:])) + 1, 1)
 
     def missed(frequency: float) -> float:
         phase = 2 * math.pi * frequency * time
@@ -443,41 +443,41 @@ def _part_of_other_frequencies(record: SignalRecord) -> float:
         return float(residuals @ residuals)
 
     # A frequency between bins is within one of the largest.
-    found = minimize_scalar(
-        missed, bounds=(max(near - bin_, bin_ / 4), near + bin_), method="bounded"
+    result = minimize_scalar(
+        missed, bounds=(max(peak - bin_, bin_ / 4), peak + bin_), method="bounded"
     )
-    return float(found.fun) / max(float(command @ command), np.finfo(float).tiny)
+    return float(result.fun) / max(float(command @ command), np.finfo(float).tiny)
 
 
-def _rivals(found: DelayIdentification) -> Iterator[str]:
+def _rivals(result: DelayIdentification) -> Iterator[str]:
     """Yield models that explain the record nearly as well with quite another delay."""
-    if found.one_frequency:
+    if result.one_frequency:
         yield (
-            f"{found.record.names[0]} has one frequency: a delay and a lag cannot be told apart by "
-            "it; record a motion of several"
+            f"{result.record.names[0]} has one frequency: a delay and a lag cannot be told apart; "
+            "record a motion of several frequencies"
         )
         return
-    half = (found.interval.high - found.interval.low) / 2
-    for fit in found.fits:
-        other = abs(fit.samples - found.chosen.samples) > half + 1
-        if fit.bic <= found.chosen.bic + _CLEARLY and other:
+    half = (result.interval.high - result.interval.low) / 2
+    for fit in result.fits:
+        other = abs(fit.samples - result.fit.samples) > half + 1
+        if fit.bic <= result.fit.bic + _CLEARLY and other:
             yield (
                 f"{fit.follower.name} with a delay of {max(fit.samples, 0.0):.3g} samples explains "
                 "it nearly as well: this record does not tell a delay from a lag"
             )
 
 
-def _doubts(found: DelayIdentification) -> Iterator[str]:
+def _doubts(result: DelayIdentification) -> Iterator[str]:
     """Yield what speaks against the chosen delay."""
-    record, fit, untold = found.record, found.chosen, found.untold
+    record, fit, untold = result.record, result.fit, result.untold
     command, output = record.names
     yield from doubt_step(record.step)
-    yield from doubt_sizes([("delay", "the delay", found.delay.value, "s")])
-    early, error = -fit.samples, (found.interval.high - found.interval.low) / 2
+    yield from doubt_sizes([("delay", "the delay", result.delay.value, "s")])
+    early, error = -fit.samples, (result.interval.high - result.interval.low) / 2
     if untold is not None:
         yield f"the delay is {untold}"
         # The correlation still tells which column comes first.
-        early, error = -found.peak[0] / record.step, 1.0
+        early, error = -result.peak[0] / record.step, 1.0
     if early > error:
         yield (
             f"{output} comes {early:.3g} samples before {command}: the columns are swapped, or "
@@ -491,7 +491,7 @@ def _doubts(found: DelayIdentification) -> Iterator[str]:
     jitter = float(np.ptp(np.diff(record.time))) / record.step
     if jitter > 0.1:
         yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
-    estimates = [part for _, part in found.parts]
+    estimates = [part for _, part in result.parts]
     earliest = min(estimates, key=lambda part: part.high, default=None)
     latest = max(estimates, key=lambda part: part.low, default=None)
     if earliest and latest and earliest.high + _NOTABLE < latest.low:

@@ -28,7 +28,7 @@ def view_actuator(result: ActuatorIdentification) -> FindingView:
     return FindingView(
         result,
         kind="actuator",
-        chosen="output in the time domain",
+        method="output in the time domain",
         reason="",
         ranges={name.replace(" ", "_"): (wide, unit) for name, _, unit, wide in rows if wide},
         facts=_facts(result),

@@ -19,14 +19,14 @@ def view_delay(result: DelayIdentification) -> FindingView:
     """Return the output of the identification of a delay."""
     record, (lag, correlation) = result.record, result.peak
     command, output = record.names
-    model, whole = result.chosen.follower.name, span(*result.whole_samples)
+    model, whole = result.fit.follower.name, span(*result.whole_samples)
     direction = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
     parts = tuple((number(time), str(part)) for time, part in result.parts)
-    curve = (record.time, record.output, result.chosen.fitted)
+    curve = (record.time, record.output, result.fit.fitted)
     return FindingView(
         result,
         kind="delay",
-        chosen=model,
+        method=model,
         reason=f"from {command} to {output}",
         ranges={"delay": (result.delay, "s"), "samples": (result.samples, "samples")},
         facts=_facts(result),
@@ -49,7 +49,7 @@ def _table(result: DelayIdentification) -> Table:
     lowest = min(fit.bic for fit in result.fits)
     rows = tuple(
         (
-            marked(fit.follower.name, chosen=fit is result.chosen),
+            marked(fit.follower.name, is_chosen=fit is result.fit),
             number(fit.delay / result.record.step),
             number(fit.bic - lowest),
         )
@@ -64,7 +64,7 @@ def _facts(result: DelayIdentification) -> Facts:
         "columns": {"command": record.names[0], "measured": record.names[1]},
         "sampling_step_s": record.step,
         "correlation_peak": {"lag_s": result.peak[0], "correlation": result.peak[1]},
-        "chosen": result.chosen.follower.name,
+        "chosen": result.fit.follower.name,
         "delay_s": estimate_numbers(result.delay),
         "delay_samples": estimate_numbers(result.samples),
         "parts": [

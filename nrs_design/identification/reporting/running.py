@@ -47,7 +47,7 @@ def run_facts(
             }
             for c in run.checks
         ],
-        "judged_share_of_rows": run.judged,
+        "judged_share_of_rows": run.judged_share,
     }
 
 

@@ -35,7 +35,7 @@ _OFFSETS = {
 
 def view_tissue(result: TissueIdentification, arm: float | None = None) -> FindingView:
     """Return the output for a tissue; with a lever arm in m, the law at the pivot, too."""
-    model, law = result.chosen, result.chosen.law
+    model, law = result.model, result.model.law
     ranges = _parameter_rows(law, model.ranges, result.rotational)
     notes = list(_notes(result, arm))
     if law.relaxation_time is not None:
@@ -43,7 +43,7 @@ def view_tissue(result: TissueIdentification, arm: float | None = None) -> Findi
     return FindingView(
         result,
         kind="tissue",
-        chosen=law.name,
+        method=law.name,
         reason=result.reason,
         ranges={name: (estimate, unit) for name, estimate, unit in ranges},
         facts=_facts(result, arm),
@@ -81,7 +81,7 @@ def _units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
 
 def _notes(result: TissueIdentification, arm: float | None) -> Iterator[str]:
     """Yield the tangent, and the law at the pivot, in words."""
-    law, tangent = result.chosen.law, result.tangent
+    law, tangent = result.model.law, result.tangent
     if tangent is not None:
         length = "rad" if result.rotational else "m"
         values = _parameter_text(_parameter_rows(tangent.law, tangent.ranges, result.rotational))
@@ -90,10 +90,10 @@ def _notes(result: TissueIdentification, arm: float | None) -> Iterator[str]:
         values = _parameter_text(
             [*_parameter_rows(tangent.law, power, result.rotational), ("phi", exponent, "")]
         )
-        yield f"the law itself, by its tangent at {tangent.about:.5g} {length}: {values}"
+        yield f"the law itself, by its tangent at {tangent.operating_point:.5g} {length}: {values}"
     if arm is not None:
-        turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
-        yield f"at the pivot: {_parameter_text(_parameter_rows(law, turned, True))}"
+        pivot_values = [f"{value:.6g}" for value in law.at_pivot(arm).values]
+        yield f"at the pivot: {_parameter_text(_parameter_rows(law, pivot_values, True))}"
 
 
 def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
@@ -101,21 +101,21 @@ def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
     return tuple(
         "; ".join(
             (
-                f"{fit.record.name}: {int(fit.trial.used.sum())} of "
+                f"{fit.record.name}: {int(fit.trial.fit_mask.sum())} of "
                 f"{counted(len(fit.record.force), 'sample')} used",
                 *_offset_texts(fit, result.rotational),
                 *fit.trial.remarks,
             )
         )
-        for fit in result.chosen.fits
+        for fit in result.model.fits
     )
 
 
 def _offset_texts(fit: RecordFit, rotational: bool) -> Iterator[str]:
     for name, value in fit.offsets.items():
         words, units = _OFFSETS[name]
-        rest = " if the force in air is zero" * (name == ZERO and TARE not in fit.offsets)
-        yield f"{words} {value:.5g} {units[rotational]}{rest}"
+        condition = " if the force in air is zero" * (name == ZERO and TARE not in fit.offsets)
+        yield f"{words} {value:.5g} {units[rotational]}{condition}"
 
 
 def _table(result: TissueIdentification) -> Table:
@@ -124,7 +124,7 @@ def _table(result: TissueIdentification) -> Table:
     lowest = min(model.bic for model in result.models)
     rows = tuple(
         (
-            marked(model.law.name, chosen=model is result.chosen),
+            marked(model.law.name, is_chosen=model is result.model),
             *(number(fit.rmse, 3) for fit in model.fits),
             number(model.bic - lowest),
             f"{min(fit.uncertainty.whiteness for fit in model.fits):.2g}",
@@ -138,16 +138,16 @@ def _table(result: TissueIdentification) -> Table:
 
 
 def _facts(result: TissueIdentification, arm: float | None) -> Facts:
-    law, tangent = result.chosen.law, result.tangent
-    turned = None if arm is None else law.at_pivot(arm).values
+    law, tangent = result.model.law, result.tangent
+    pivot_values = None if arm is None else law.at_pivot(arm).values
     return {
         "chosen": law.name,
         "reason": result.reason,
-        "ranges": _numbers(law, result.chosen.ranges, result.rotational),
+        "ranges": _numbers(law, result.model.ranges, result.rotational),
         "tangent": None if tangent is None else _tangent(tangent, result.rotational),
-        "range_covers": result.chosen.coverage,
+        "range_covers": result.model.coverage,
         "range_covers_words": result.covers,
-        "at_pivot": turned and dict(zip(law.parameters(), turned, strict=True)),
+        "at_pivot": pivot_values and dict(zip(law.parameters(), pivot_values, strict=True)),
         "models": [_model(model, result.rotational) for model in result.models],
     }
 
@@ -165,7 +165,7 @@ def _tangent(tangent: Tangent, rotational: bool) -> Facts:
     return {
         "preload": [tangent.low, tangent.high],
         "ranges": _numbers(tangent.law, tangent.ranges, rotational),
-        "about": tangent.about,
+        "about": tangent.operating_point,
         "law": law,
     }
 
@@ -187,7 +187,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
         "rmse": fit.rmse,
         "bic": fit.bic,
         "offsets": fit.offsets,
-        "used": int(fit.trial.used.sum()),
+        "used": int(fit.trial.fit_mask.sum()),
         "samples": len(fit.record.force),
         "cuts": list(fit.trial.cuts),
         "remarks": list(fit.trial.remarks),
@@ -208,7 +208,7 @@ def _doubts(result: TissueIdentification) -> Iterator[Bullets]:
 
 
 def _estimates(result: TissueIdentification) -> Table:
-    model, law = result.chosen, result.chosen.law
+    model, law = result.model, result.model.law
     units = _units(law, result.rotational)
     names = (f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True))
     rows = (
@@ -221,8 +221,8 @@ def _estimates(result: TissueIdentification) -> Table:
 
 def _curves(result: TissueIdentification) -> Iterator[Curve]:
     label = "Torque [N m]" if result.rotational else "Force [N]"
-    for fit in result.chosen.fits:
+    for fit in result.model.fits:
         trial, white = fit.trial, f"whiteness p = {fit.uncertainty.whiteness:.2g}"
         note = f"Fit to this record alone: RMSE {number(fit.rmse)}, {white}."
-        data = (trial.motion.time, trial.force, fit.fitted, trial.used)
+        data = (trial.motion.time, trial.force, fit.fitted, trial.fit_mask)
         yield Curve(fit.record.name, note, label, *data)

@@ -52,7 +52,7 @@ class Curve:
     time: Array
     measured: Array
     fitted: Array
-    used: Flags | None = None  # Samples that were fitted; None for all
+    fit_mask: Flags | None = None  # Samples that were fitted; None for all
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +61,7 @@ class FindingView:
 
     result: AbstractIdentification[Any]
     kind: str  # ``tissue``, ``actuator`` or ``delay``
-    chosen: str  # Law, method or model
+    method: str  # Law, method or model
     reason: str  # Reason of the choice, or the columns
     ranges: Mapping[str, tuple[Estimate, str]]  # The numbers and their units, by name
     facts: Facts  # Facts of this kind of identification
@@ -104,7 +104,7 @@ class FindingView:
         )
         fits = () if self.fits is None else (self.fits,)
         return Report(
-            name=f"{self.kind}-{self.chosen}" if self.kind == "tissue" else self.kind,
+            name=f"{self.kind}-{self.method}" if self.kind == "tissue" else self.kind,
             title=self.title,
             verdict="identified",
             claim=f"{label}{self.claim}",
@@ -140,25 +140,25 @@ def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
     return {"value": estimate.value, "low": low, "high": high}
 
 
-def marked(name: str, *, chosen: bool) -> str:
+def marked(name: str, *, is_chosen: bool) -> str:
     """Return the name of a fit in a table of several."""
-    return f"{name} (chosen)" if chosen else name
+    return f"{name} (chosen)" if is_chosen else name
 
 
 @styled
 def _draw(curve: Curve) -> Figure:
     """Draw both outputs over time, and their difference below; unused samples are pale."""
-    pick, used = slice(None, None, max(1, -(-len(curve.time) // _POINTS))), curve.used
-    shown = np.ones(len(curve.time), bool)[pick] if used is None else used[pick]
+    pick, fit_mask = slice(None, None, max(1, -(-len(curve.time) // _POINTS))), curve.fit_mask
+    points = np.ones(len(curve.time), bool)[pick] if fit_mask is None else fit_mask[pick]
     figure = new_figure(4.4)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1.0])
     t, data, fitted = (a[pick] for a in (curve.time, curve.measured, curve.fitted))
-    upper.plot(t[shown], data[shown], ".", color=_MEASURED, markersize=4.0, label="data")
-    if not shown.all():
-        upper.plot(t[~shown], data[~shown], "x", color=_UNUSED, markersize=3.5, label="not used")
-    upper.plot(t, np.where(shown, fitted, np.nan), color=BLUE, label="fitted", linewidth=1.4)
+    upper.plot(t[points], data[points], ".", color=_MEASURED, markersize=4.0, label="data")
+    if not points.all():
+        upper.plot(t[~points], data[~points], "x", color=_UNUSED, markersize=3.5, label="not used")
+    upper.plot(t, np.where(points, fitted, np.nan), color=BLUE, label="fitted", linewidth=1.4)
     upper.set_ylabel(curve.label)
-    lower.plot(t[shown], (data - fitted)[shown], ".", color=VERMILLION, markersize=2.5)
+    lower.plot(t[points], (data - fitted)[points], ".", color=VERMILLION, markersize=2.5)
     lower.axhline(0.0, color=INK, linewidth=0.8)
     # Short enough for its height.
     lower.set_ylabel("Data - fitted")

@@ -46,7 +46,7 @@ class RunBounds:
         return "the proof" if self.proved else "the spec, which is not proved"
 
     @property
-    def assumed_by(self) -> str:
+    def assumption_basis(self) -> str:
         """The basis of what no check shows."""
         return f"taken for granted by {self.source}"
 
@@ -81,9 +81,9 @@ def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
     if verdict != "proved":
         return f"its certificate says {verdict}", False
     # A proof of a spec with losable contact covers lost contact, whatever its evidence.
-    asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
+    is_required = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
     covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
-    return "", asked or covered
+    return "", is_required or covered
 
 
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:

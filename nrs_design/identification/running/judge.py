@@ -13,9 +13,9 @@ from nrs_design.identification.delay.identify import identify_delay
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.rounding import noise_variance
 from nrs_design.identification.running.bounds import RunBounds
+from nrs_design.identification.running.dwell_times import judge_stays
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.sector import judge_sector
-from nrs_design.identification.running.stays import judge_stays
 from nrs_design.identification.statistics import joint_level, span, student_quantile
 from nrs_design.proof.bounds import lower, upper
 
@@ -33,7 +33,7 @@ class RunJudgement:
     bounds: RunBounds  # What the spec promises
     checks: tuple[AuditCheck, ...]  # One for each bound
     # Share of the rows in which a stiffness far off would show; None without a test.
-    judged: float | None = None
+    judged_share: float | None = None
 
     @property
     def first(self) -> AuditCheck | None:
@@ -70,7 +70,7 @@ def judge_run(
             "other out",
         )
     bounds = replace(bounds, proved=proved)
-    tested, judged = judge_sector(log, bounds)
+    tested, judged_share = judge_sector(log, bounds)
     checks = (
         *tested,
         _judge_contact(bounds, losable=losable if proved else bounds.losable),
@@ -80,19 +80,21 @@ def judge_run(
         _judge_saturation(log, bounds),
         _judge_force(log, bounds),
         *(
-            AuditCheck(f"preload of {name}", "not judged", _NO_SURFACE, allowed, bounds.assumed_by)
-            for name, allowed in bounds.preloads.items()
+            AuditCheck(
+                f"preload of {name}", "not judged", _NO_SURFACE, limit_text, bounds.assumption_basis
+            )
+            for name, limit_text in bounds.preloads.items()
         ),
     )
-    return RunJudgement(log, bounds, checks, judged)
+    return RunJudgement(log, bounds, checks, judged_share)
 
 
 def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> AuditCheck:
     """Return the check of lost contact; `losable` is None if nothing states it."""
     if losable:
         basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
-        allowed = "lost and made again at any time"
-        return AuditCheck("contact", "inside", "may be lost", allowed, basis)
+        limit_text = "lost and made again at any time"
+        return AuditCheck("contact", "inside", "may be lost", limit_text, basis)
     if losable is None:
         basis = "`contact` of the spec, or a certificate, says whether it may be lost"
         return AuditCheck("contact", "not judged", _NO_LOSS, "not said", basis)
@@ -102,17 +104,19 @@ def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> AuditCheck:
 
 def _judge_delay(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge how late the motion follows the command."""
-    seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
-    if "command" not in log.columns or seen is None:
+    signal = next((name for name in ("angle", "velocity") if name in log.columns), None)
+    if "command" not in log.columns or signal is None:
         missing = "command" if "command" not in log.columns else "angle or velocity"
         return AuditCheck("delay", "not judged", f"no column for {missing}")
     rows = longest_stretch(log.time)
     if rows.stop - rows.start < FEWEST_ROWS:
         return AuditCheck("delay", "not judged", f"no {FEWEST_ROWS} rows without a gap")
-    time, sent, moved = log.time[rows], log.columns["command"][rows], log.columns[seen][rows]
+    time, command, output = (
+        a[rows] for a in (log.time, log.columns["command"], log.columns[signal])
+    )
     try:
         found = identify_delay(
-            SignalRecord(log.source, time - time[0], sent, moved, names=("command", seen))
+            SignalRecord(log.source, time - time[0], command, output, names=("command", signal))
         )
     except DataError as error:
         return AuditCheck("delay", "not judged", error.message)
@@ -124,14 +128,14 @@ def _judge_delay(log: RunLog, bounds: RunBounds) -> AuditCheck:
     if found.doubts:
         return AuditCheck("delay", "not judged", f"not told by this record: {found.doubts[0]}")
     if bounds.delay is None:
-        return AuditCheck("delay", "not modelled", words, _time_of(bounds), bounds.assumed_by)
+        return AuditCheck("delay", "not modelled", words, _time_of(bounds), bounds.assumption_basis)
     # Beside gaps, only the longest stretch is judged.
     whole = rows.stop - rows.start == len(log.time)
     status: Status = "inside" if high < bounds.delay and whole else "undecided"
-    allowed, basis = f"below {bounds.delay:g} s", "delay margin of the design"
+    limit_text, basis = f"below {bounds.delay:g} s", "delay margin of the design"
     if low > bounds.delay:
-        return AuditCheck("delay", "outside", words, allowed, basis, log.begin, words)
-    return AuditCheck("delay", status, words, allowed, basis)
+        return AuditCheck("delay", "outside", words, limit_text, basis, log.begin, words)
+    return AuditCheck("delay", status, words, limit_text, basis)
 
 
 def _judge_jitter(log: RunLog, bounds: RunBounds) -> AuditCheck:
@@ -143,7 +147,7 @@ def _judge_jitter(log: RunLog, bounds: RunBounds) -> AuditCheck:
         count = max(round(log.step / bounds.period), 1)
         if abs(log.step - count * bounds.period) > _UNEVEN * bounds.period:
             words += f": no whole number of periods of {bounds.period:g} s"
-    return AuditCheck("jitter", "not modelled", words, _time_of(bounds), bounds.assumed_by)
+    return AuditCheck("jitter", "not modelled", words, _time_of(bounds), bounds.assumption_basis)
 
 
 def _time_of(bounds: RunBounds) -> str:
@@ -167,25 +171,25 @@ def _judge_saturation(log: RunLog, bounds: RunBounds) -> AuditCheck:
     if limit is None:
         unknown = "where the driver saturates is not known: give the spec `limits: command`"
         return AuditCheck("saturation", "not judged", f"{largest}; {unknown}")
-    allowed = f"below {limit:g} {log.command_unit}"
+    limit_text = f"below {limit:g} {log.command_unit}"
     rows = np.flatnonzero(size >= limit)
     if not len(rows):
-        return AuditCheck("saturation", "inside", largest, allowed, bounds.assumed_by)
+        return AuditCheck("saturation", "inside", largest, limit_text, bounds.assumption_basis)
     words = f"the command is {log.columns['command'][rows[0]]:.5g} {log.command_unit}"
-    basis, time = bounds.assumed_by, log.time_of(rows[0])
-    return AuditCheck("saturation", "outside", largest, allowed, basis, time, words)
+    basis, time = bounds.assumption_basis, log.time_of(rows[0])
+    return AuditCheck("saturation", "outside", largest, limit_text, basis, time, words)
 
 
 def _judge_force(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge the torque against the limit of the design."""
-    allowed, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
+    limit_text, basis = f"up to {bounds.torque:g} N m", "limit of the spec"
     if bounds.proved:
         basis += ", not of the proof"
     torque = log.columns.get("torque")
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm
     if torque is None:
-        return AuditCheck("force", "not judged", "no column for torque or force", allowed, basis)
+        return AuditCheck("force", "not judged", "no column for torque or force", limit_text, basis)
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # Largest noise of any row, at 95 % for all rows together.
@@ -195,7 +199,7 @@ def _judge_force(log: RunLog, bounds: RunBounds) -> AuditCheck:
     if not len(rows):
         status: Status = "undecided" if size.max() > bounds.torque else "inside"
         largest += f", noise up to {noise:.2g} N m"
-        return AuditCheck("force", status, largest, allowed, basis)
+        return AuditCheck("force", status, largest, limit_text, basis)
     words = f"the torque is {torque[rows[0]]:.4g} N m"
     time = log.time_of(rows[0])
-    return AuditCheck("force", "outside", largest, allowed, basis, time, words)
+    return AuditCheck("force", "outside", largest, limit_text, basis, time, words)

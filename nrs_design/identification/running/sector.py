@@ -32,8 +32,8 @@ class _Rows:
     lowest: Array
     highest: Array
     # least, most: torque, with its noise.
-    least: Array
-    most: Array
+    torque_low: Array
+    torque_high: Array
     # first, last: angle at which it was measured, with its noise.
     first: Array
     last: Array
@@ -52,23 +52,23 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[AuditCheck, ...]
     if isinstance(sector, str):
         return (AuditCheck("stiffness", "not judged", sector),), None
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
-    allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
-    every = bounds.period or bounds.oldest or inf
-    if (bounds.oldest or sector.surface != "fixed") and log.step > _LONGEST_STEP * every:
+    limit_text = span(float(sector.low), float(sector.high), "N m/rad", 5)
+    interval = bounds.period or bounds.oldest or inf
+    if (bounds.oldest or sector.surface != "fixed") and log.step > _LONGEST_STEP * interval:
         words = "rows are missing that the age of a torque, or a contact, is told by: log all"
-        return (AuditCheck("stiffness", "not judged", words, allowed, basis),), 0.0
+        return (AuditCheck("stiffness", "not judged", words, limit_text, basis),), 0.0
     rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _AGE_TOLERANCE))
-    certain = rows.least > 0
-    first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
+    certain = rows.torque_low > 0
+    first, is_judged = inf, np.zeros(len(log.time), dtype=np.bool_)
     for begin, end in _contacts(log, certain, sector):
-        left, judged[begin:end] = _one_surface(log, rows, (begin, end), sector)
+        left, is_judged[begin:end] = _one_surface(log, rows, (begin, end), sector)
         first = min(first, left)
-    pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
+    pulled = np.flatnonzero((rows.torque_high < 0) & (not sector.kept))
     first = min(first, float(pulled[0]) if len(pulled) else inf)
     # After a violation, the surface is unknown.
-    judged[int(min(first, len(judged))) :] = False
-    share = float((judged & certain).mean())
-    check = _stiffness(log, columns[1], first, share, allowed, basis)
+    is_judged[int(min(first, len(is_judged))) :] = False
+    share = float((is_judged & certain).mean())
+    check = _stiffness(log, columns[1], first, share, limit_text, basis)
     return (check, *_speed(log, columns[0], sector, basis)), share
 
 
@@ -88,19 +88,19 @@ def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -
     low, high = float(sector.low), float(sector.high)
     size = np.abs(angle).max() + np.abs(torque).max() / low
     margin = error * (1 + _ROUNDING) + _ROUNDING * float(size)
-    late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
+    shifts = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
     # Before the log, and before a gap, an angle is not known: NaN stays NaN.
-    first, last = np.min(late, axis=0) - margin, np.max(late, axis=0) + margin
+    first, last = np.min(shifts, axis=0) - margin, np.max(shifts, axis=0) + margin
     for k in np.flatnonzero(log.gaps):
         first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
-    least, most = torque - noise * (1 + _ROUNDING), torque + noise * (1 + _ROUNDING)
-    lowest = first - np.maximum(most / low, most / high)
-    highest = last - np.minimum(least / low, least / high)
+    torque_low, torque_high = torque - noise * (1 + _ROUNDING), torque + noise * (1 + _ROUNDING)
+    lowest = first - np.maximum(torque_high / low, torque_high / high)
+    highest = last - np.minimum(torque_low / low, torque_low / high)
     unknown = np.isnan(first)
     return _Rows(
         np.where(unknown, -inf, lowest),
-        np.where(unknown | ~((least > 0) | sector.kept), inf, highest),
-        *(least, most, first, last),
+        np.where(unknown | ~((torque_low > 0) | sector.kept), inf, highest),
+        *(torque_low, torque_high, first, last),
     )
 
 
@@ -124,31 +124,31 @@ def _one_surface(
 ) -> tuple[float, Flags]:
     """Return the first row that leaves no surface (else infinity), and which rows are judged."""
     part = slice(*ends)
-    moved = float(sector.surface_speed) * log.time[part]
-    lowest = np.maximum.accumulate(rows.lowest[part] + moved)
-    highest = np.minimum.accumulate(rows.highest[part] - moved)
-    empty = np.flatnonzero(lowest - moved > highest + moved)
+    drift = float(sector.surface_speed) * log.time[part]
+    lowest = np.maximum.accumulate(rows.lowest[part] + drift)
+    highest = np.minimum.accumulate(rows.highest[part] - drift)
+    empty = np.flatnonzero(lowest - drift > highest + drift)
     # From the rows before: a row that is off would move its own interval.
-    before = np.concatenate([[-inf], lowest[:-1]]) - moved
-    after = np.concatenate([[inf], highest[:-1]]) + moved
+    before = np.concatenate([[-inf], lowest[:-1]]) - drift
+    after = np.concatenate([[inf], highest[:-1]]) + drift
     factor, low, high = float(JUDGED), float(sector.low), float(sector.high)
     with np.errstate(invalid="ignore"):
-        below = rows.most[part] < factor * high * (rows.first[part] - after)
-        above = rows.least[part] > low / factor * (rows.last[part] - before)
-    return ends[0] + float(empty[0]) if len(empty) else inf, below & above
+        is_below = rows.torque_high[part] < factor * high * (rows.first[part] - after)
+        is_above = rows.torque_low[part] > low / factor * (rows.last[part] - before)
+    return ends[0] + float(empty[0]) if len(empty) else inf, is_below & is_above
 
 
 def _stiffness(
-    log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
+    log: RunLog, torque: Array, first: float, share: float, limit_text: str, basis: str
 ) -> AuditCheck:
     percent = floor(1000 * share) / 10
-    within = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
+    note = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
     if first == inf:
-        words = f"the range explains every row; {within}"
-        return AuditCheck("stiffness", "undecided", words, allowed, basis)
+        words = f"the range explains every row; {note}"
+        return AuditCheck("stiffness", "undecided", words, limit_text, basis)
     words = f"no stiffness of the range explains {torque[int(first)]:.4g} N m and the rows before"
     time = log.time_of(first)
-    return AuditCheck("stiffness", "outside", within, allowed, basis, time, words)
+    return AuditCheck("stiffness", "outside", note, limit_text, basis, time, words)
 
 
 def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[AuditCheck]:
@@ -156,7 +156,7 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Au
     if sector.speed is None:
         return
     name, limit = "speed of the joint", float(sector.speed)
-    allowed = f"up to {limit:.4g} rad/s"
+    limit_text = f"up to {limit:.4g} rad/s"
     # Stamps may be early or late where the samples are not.
     step = np.maximum(np.diff(log.time), log.step)
     size = np.abs(np.diff(angle))
@@ -164,8 +164,8 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Au
     rows_above = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
     measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
     if not len(rows_above):
-        yield AuditCheck(name, "inside", measured, allowed, basis)
+        yield AuditCheck(name, "inside", measured, limit_text, basis)
         return
     row = int(rows_above[0])
     words = f"{size[row]:.3g} rad in {step[row]:.3g} s"
-    yield AuditCheck(name, "outside", measured, allowed, basis, log.time_of(row + 1), words)
+    yield AuditCheck(name, "outside", measured, limit_text, basis, log.time_of(row + 1), words)

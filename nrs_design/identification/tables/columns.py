@@ -56,7 +56,7 @@ _BRACKETED = re.compile(r"^(?P<what>[^\[\]()]+?)\s*[\[(](?P<unit>[^\[\]()]*)[\])
 _NO_ENDINGS = frozenset({"", "any", "s", "m", "min", "in", "A"})
 # Units in brackets of other quantities.
 _FOREIGN = frozenset({"g", "kg", "lb", "oz", "nN", "nm", "ft", "Pa", "kPa", "MPa", "%", "h"})
-_KNOWN = frozenset(unit for units in UNITS.values() for unit in units)
+_ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,25 +96,25 @@ def read_name(text: str) -> Name | None:
     None if it names no quantity of ours; the unit of one that does may be unknown or empty.
     """
     bracketed = _BRACKETED.match(text.strip())
-    what, _, unit = text.strip().partition("_")
+    label, _, unit = text.strip().partition("_")
     if bracketed:
-        what, unit = bracketed["what"], bracketed["unit"]
-    quantity = what.lower()
+        label, unit = bracketed["what"], bracketed["unit"]
+    quantity = label.lower()
     return Name(quantity, _read_unit(unit, quantity)) if quantity in UNITS else None
 
 
 def _read_unit(text: str, quantity: str) -> str:
     """Return our name of a unit, or the text itself if it is not known."""
-    plain = text.strip().replace("μ", "µ").replace("·", "*")
-    return plain if plain in UNITS[quantity] else _SPELLINGS.get(plain.lower(), plain)
+    spelling = text.strip().replace("μ", "µ").replace("·", "*")
+    return spelling if spelling in UNITS[quantity] else _SPELLINGS.get(spelling.lower(), spelling)
 
 
 def _stated_unit(text: str, quantity: str) -> str | None:
     """Return the known unit in a foreign name such as ``Weg [mm]`` or ``load_kN``, or None."""
     if bracketed := _BRACKETED.match(text.strip()):
         unit = _read_unit(bracketed["unit"], quantity)
-        return unit if unit in (_KNOWN - {""}) | _FOREIGN else None
-    endings = (unit for unit in _KNOWN - _NO_ENDINGS if text.endswith(f"_{unit}"))
+        return unit if unit in (_ALL_UNITS - {""}) | _FOREIGN else None
+    endings = (unit for unit in _ALL_UNITS - _NO_ENDINGS if text.endswith(f"_{unit}"))
     return max(endings, key=len, default=None)
 
 
@@ -132,13 +132,13 @@ def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
     """Read ``OURS=THEIRS`` entries of ``--map``; return standard names by names in the file."""
     mapping: dict[str, str] = {}
     for entry in entries:
-        ours, equals, theirs = (part.strip() for part in entry.partition("="))
-        if not (ours and equals and theirs):
+        standard, equals, foreign = (part.strip() for part in entry.partition("="))
+        if not (standard and equals and foreign):
             raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
-        _read_standard_name(ours, f"--map {entry!r}: ")
-        if theirs in mapping or ours in mapping.values():
+        _read_standard_name(standard, f"--map {entry!r}: ")
+        if foreign in mapping or standard in mapping.values():
             raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")
-        mapping[theirs] = ours
+        mapping[foreign] = standard
     return mapping
 
 
@@ -152,19 +152,19 @@ def find_columns(
 
     What the user has mapped decides between layouts, then their order.
     """
-    for theirs, ours in mapping.items():
-        _check_mapped(theirs, ours, header)
-    wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
-    named = {_read_standard_name(ours).quantity for ours in mapping.values()}
+    for foreign, standard in mapping.items():
+        _check_mapped(foreign, standard, header)
+    quantities_to_find = {quantity for layout in layouts for quantity in layout} | set(optional)
+    mapped_quantities = {_read_standard_name(standard).quantity for standard in mapping.values()}
     found: dict[str, Column] = {}
     faults: list[DataError] = []
     for index, text in enumerate(header):
         name = read_name(mapping.get(text, text))
         # A mapped column takes precedence over others with a name of the same quantity.
-        if name is None or (text not in mapping and name.quantity in named):
+        if name is None or (text not in mapping and name.quantity in mapped_quantities):
             continue
         quantity = name.quantity
-        if quantity not in wanted:
+        if quantity not in quantities_to_find:
             continue
         if not name.is_known:
             faults.append(_unknown_unit(name, text))
@@ -178,29 +178,29 @@ def find_columns(
             )
         else:
             found[quantity] = Column(index, text, name.factor, name.read_as)
-    for layout in sorted(layouts, key=lambda quantities: len(named - set(quantities))):
+    for layout in sorted(layouts, key=lambda quantities: len(mapped_quantities - set(quantities))):
         if set(layout) <= found.keys():
-            taken = (*layout, *(key for key in optional if key in found))
-            return layout, {quantity: found[quantity] for quantity in taken}
+            layout_quantities = (*layout, *(key for key in optional if key in found))
+            return layout, {quantity: found[quantity] for quantity in layout_quantities}
     raise faults[0] if faults else _missing(found, header, layouts)
 
 
-def _check_mapped(theirs: str, ours: str, header: Sequence[str]) -> None:
+def _check_mapped(foreign: str, standard: str, header: Sequence[str]) -> None:
     """Refuse a mapping of no column, and one whose unit contradicts the name of its column."""
-    if theirs not in header:
-        near = difflib.get_close_matches(theirs, header, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"it has {_header_text(header)}"
-        raise DataError(f"there is no column {theirs!r} to map", remedy=hint)
-    name = _read_standard_name(ours)
-    unit = _stated_unit(theirs, name.quantity)
+    if foreign not in header:
+        matches = difflib.get_close_matches(foreign, header, n=1)
+        hint = f"did you mean {matches[0]!r}?" if matches else f"it has {_header_text(header)}"
+        raise DataError(f"there is no column {foreign!r} to map", remedy=hint)
+    name = _read_standard_name(standard)
+    unit = _stated_unit(foreign, name.quantity)
     if unit in (None, name.unit) or name.unit in ("", "any"):
         return
     remedy = f"map another column; if this is one in {name.unit}, correct its name"
     if unit in UNITS[name.quantity]:
         right = f"{name.quantity}_{unit}"
-        remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
-    says = f"the column {theirs!r} says {unit}, and {ours} is in {name.unit}"
-    raise DataError(f"--map '{ours}={theirs}': {says}", remedy=remedy)
+        remedy = f"write --map '{right}={foreign}', or rename the column if its unit is wrong"
+    conflict = f"the column {foreign!r} says {unit}, and {standard} is in {name.unit}"
+    raise DataError(f"--map '{standard}={foreign}': {conflict}", remedy=remedy)
 
 
 def _read_standard_name(text: str, prefix: str = "") -> Name:

@@ -116,17 +116,17 @@ def _read(
     lines = _lines(raw)
     head = list(islice(lines, _PREAMBLE))
     example = ",".join(key if "any" in UNITS[key] else standard_name(key) for key in layouts[0])
-    at, separator, names = _read_header(head, example)
+    header_row, separator, names = _read_header(head, example)
     try:
         layout, columns = find_columns(names, layouts, mapping, optional)
     except DataError as error:
-        error.line = at
+        error.line = header_row
         raise
     cells, numbers = _Cells(), array("d")
-    for line, text in _filled(enumerate(chain(head[at:], lines), at + 1)):
-        if line - at > MAX_ROWS:
+    for line, text in _filled(enumerate(chain(head[header_row:], lines), header_row + 1)):
+        if line - header_row > MAX_ROWS:
             raise DataError(f"has more than {MAX_ROWS} rows", remedy="record more slowly")
-        row = _split(text, separator, line)
+        row = _parse_row(text, separator, line)
         if len(row) != len(names):
             raise DataError(
                 f"the row has {len(row)} values, the header {len(names)}",
@@ -141,7 +141,7 @@ def _read(
     synthetic = any(text[:1] in _COMMENT and "synthetic" in text.lower() for text in head)
     source = Source(path, hashlib.sha256(raw).hexdigest(), synthetic)
     values = dict(zip(columns, scaled, strict=True))
-    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), at + 1)
+    return MeasurementTable(source, layout, values, columns, tuple(cells.labels), header_row + 1)
 
 
 def _read_header(lines: Sequence[str], example: str) -> tuple[int, str, list[str]]:
@@ -149,19 +149,19 @@ def _read_header(lines: Sequence[str], example: str) -> tuple[int, str, list[str
 
     They are in the first line that is no comment, or in the comment right above bare numbers.
     """
-    at = next((at for at, text in enumerate(lines) if text and text[0] not in _COMMENT), None)
-    if at is None:
+    header = next((row for row, text in enumerate(lines) if text and text[0] not in _COMMENT), None)
+    if header is None:
         raise DataError("has no header line", remedy="name the columns in a line")
-    if _decimal(_split(lines[at], _separator(lines[at]), at + 1)[0]) is not None:
-        if at == 0 or not lines[at - 1]:
+    if _decimal(_parse_row(lines[header], _separator(lines[header]), header + 1)[0]) is not None:
+        if header == 0 or not lines[header - 1]:
             raise DataError(
                 "begins with numbers, not with the names of its columns",
-                line=at + 1,
+                line=header + 1,
                 remedy=f"add a header such as {example}",
             )
-        at -= 1
-    text = lines[at].lstrip(f"{_COMMENT} ")
-    return at + 1, _separator(text), _split(text, _separator(text), at + 1)
+        header -= 1
+    text = lines[header].lstrip(f"{_COMMENT} ")
+    return header + 1, _separator(text), _parse_row(text, _separator(text), header + 1)
 
 
 def _separator(text: str) -> str:
@@ -169,7 +169,7 @@ def _separator(text: str) -> str:
     return max(",;\t", key=text.count) if set(text) & set(",;\t") else " "
 
 
-def _split(text: str, separator: str, line: int) -> list[str]:
+def _parse_row(text: str, separator: str, line: int) -> list[str]:
     try:
         row = next(csv.reader([text], delimiter=separator, skipinitialspace=True), [""])
     except csv.Error as error:

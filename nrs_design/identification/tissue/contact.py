@@ -50,8 +50,8 @@ class Touch:
     first: int  # First row beyond the position of contact
     # met, lost: first row with force, and end of the rows with force. A tissue that is not at rest
     # is met beyond the position of contact, and lost before it.
-    met: int
-    lost: int
+    force_begin: int
+    force_end: int
     end: int  # End of the rows beyond the position of contact
 
 
@@ -63,14 +63,14 @@ class DetectedContact:
     # Ends of the 99 % interval of the position of contact, relative to it, into the tissue.
     ends: tuple[float, float]
     side: int  # 1 if the tissue is where positions are larger, else -1
-    beyond: Flags  # Shape (n,). Beyond the position of contact.
+    tissue_side: Flags  # Shape (n,). Beyond the position of contact.
     clear: Flags  # Shape (n,). With a force that clearly differs from the air.
 
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
         """How often and when the probe meets the tissue."""
         found = []
-        for first, end in runs(self.beyond):
+        for first, end in runs(self.tissue_side):
             clear = np.flatnonzero(self.clear[first:end])
             if len(clear):
                 rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
@@ -82,8 +82,8 @@ class DetectedContact:
 class _Corner:
     """Position at which the force of one insertion leaves the force in air."""
 
-    # at, low, high: position, and its 99 % interval.
-    at: float
+    # position, low, high: position, and its 99 % interval.
+    position: float
     low: float
     high: float
     gain: float  # What n log(SSE) gains against a smooth curve without a corner
@@ -105,18 +105,19 @@ def find_contact(record: TissueRecord) -> DetectedContact | None:
         if gain >= _BETTER:
             # A touch may meet a tissue that has not come back: the least position tells best.
             likely = (c for c in corners[side] if c.flat or c.gain >= _PLAUSIBLE)
-            corner = min(likely, key=lambda c: c.at)
-            beyond = side * x > corner.at
-            ends = corner.low - corner.at, corner.high - corner.at
-            return DetectedContact(side * corner.at, ends, side, beyond, _clear(force, beyond))
+            corner = min(likely, key=lambda c: c.position)
+            tissue_side = side * x > corner.position
+            ends = corner.low - corner.position, corner.high - corner.position
+            clear = _clear(force, tissue_side)
+            return DetectedContact(side * corner.position, ends, side, tissue_side, clear)
     return None
 
 
 def _insertion(u: Array, velocity: Array, force: Array, cycle: slice) -> tuple[Array, Array, Array]:
     """Return the samples of the insertion: a relaxing tissue separates at another position."""
     rows = np.arange(len(u))[cycle]
-    way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
-    rows = way_in if len(way_in) >= 5 * _FEWEST else rows
+    insertion = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]
+    rows = insertion if len(insertion) >= 5 * _FEWEST else rows
     rows = rows[:: -(-len(rows) // _COARSE)]
     return u[rows], velocity[rows], force[rows]
 
@@ -135,12 +136,12 @@ def _corner(u: Array, velocity: Array, force: Array) -> Iterator[_Corner]:
     grid = np.linspace(0.0, 1.0, 2 * _GRID)
     errors = _errors(curve, np.maximum(v - grid[:, None], 0.0), velocity, centered)
     # Likelihood-ratio interval; a step more than what the grid shows.
-    near = grid[errors < error * np.exp(_PLAUSIBLE / count)]
-    reach = [best, *near - grid[1], *near + grid[1]]
-    at, first, last = (float(low + part * span) for part in (best, min(reach), max(reach)))
+    candidates = grid[errors < error * np.exp(_PLAUSIBLE / count)]
+    ends = [best, *candidates - grid[1], *candidates + grid[1]]
+    position, first, last = (float(low + part * span) for part in (best, min(ends), max(ends)))
     explained = error <= (1 - _EXPLAINED) * float(centered @ centered)
-    flat = explained and _is_flat(u, force, at)
-    yield _Corner(at, first, last, count * float(np.log(smooth / error)), flat)
+    flat = explained and _is_flat(u, force, position)
+    yield _Corner(position, first, last, count * float(np.log(smooth / error)), flat)
 
 
 def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:
@@ -148,10 +149,10 @@ def _best_corner(v: Array, velocity: Array, force: Array) -> tuple[int, float, f
 
     Damping that grows with the deflection must be clear: without it, its curve is too free.
     """
-    plain, grows = (_corner_of(curve, v, velocity, force) for curve in (_BASIC, _FULL))
-    left = _residuals(_BASIC, np.maximum(v - plain[1], 0.0), velocity, force)
-    clear = plain[2] > grows[2] * np.exp(_BETTER / independent(left))
-    return grows if clear else plain
+    basic, grows = (_corner_of(curve, v, velocity, force) for curve in (_BASIC, _FULL))
+    left = _residuals(_BASIC, np.maximum(v - basic[1], 0.0), velocity, force)
+    clear = basic[2] > grows[2] * np.exp(_BETTER / independent(left))
+    return grows if clear else basic
 
 
 def _corner_of(curve: int, v: Array, velocity: Array, force: Array) -> tuple[int, float, float]:
@@ -159,8 +160,8 @@ def _corner_of(curve: int, v: Array, velocity: Array, force: Array) -> tuple[int
     step = float(grid[1] - grid[0])
     for _ in range(_REFINED):
         errors = _errors(curve, np.maximum(v - grid[:, None], 0.0), velocity, force)
-        at = int(np.argmin(errors))
-        best, error = float(grid[at]), float(errors[at])
+        index = int(np.argmin(errors))
+        best, error = float(grid[index]), float(errors[index])
         grid = np.linspace(max(best - step, 0.0), min(best + step, 1.0), _FINE)
         step = float(grid[1] - grid[0])
     return curve, best, error
@@ -209,12 +210,12 @@ def inner(touching: Flags) -> Flags:
     return np.asarray(windows.all(axis=1))
 
 
-def _clear(force: Array, beyond: Flags) -> Flags:
+def _clear(force: Array, tissue_side: Flags) -> Flags:
     """Flag samples whose force clearly differs from the force in air."""
-    air = force[~beyond]
+    air = force[~tissue_side]
     noise = float(np.std(air)) / np.sqrt(_SMOOTH)
     distance = np.abs(smoothed(force, _SMOOTH) - float(np.median(air)))
-    return np.asarray(beyond & (distance > _CLEAR * noise))
+    return np.asarray(tissue_side & (distance > _CLEAR * noise))
 
 
 def find_cycles(deflection: Array) -> tuple[slice, ...]:
@@ -227,27 +228,27 @@ def find_cycles(deflection: Array) -> tuple[slice, ...]:
     return tuple(slice(a, b) for a, b in pairwise(edges))
 
 
-def _lows(values: Array, least: float) -> list[int]:
+def _lows(values: Array, threshold: float) -> list[int]:
     """Return the rows between a large fall and a large rise, where it is lowest."""
     lows: list[int] = []
-    at_low, at_high, rising = 0, 0, True
+    low_row, high_row, rising = 0, 0, True
     values_list = values.tolist()
     for row, value in enumerate(values_list):
         if rising:
-            at_high = row if value >= values_list[at_high] else at_high
-            if values_list[at_high] - value > least:
-                rising, at_low = False, row
+            high_row = row if value >= values_list[high_row] else high_row
+            if values_list[high_row] - value > threshold:
+                rising, low_row = False, row
         else:
             # The last of equal rows: a cycle begins with its load.
-            at_low = row if value <= values_list[at_low] else at_low
-            if value - values_list[at_low] > least:
-                lows.append(at_low)
-                rising, at_high = True, row
+            low_row = row if value <= values_list[low_row] else low_row
+            if value - values_list[low_row] > threshold:
+                lows.append(low_row)
+                rising, high_row = True, row
     return lows
 
 
 def surface(
-    time: Array, position: Array, touches: Sequence[Touch], least: float
+    time: Array, position: Array, contacts: Sequence[Touch], threshold: float
 ) -> tuple[Array, Flags]:
     """Return the deflection of the tissue, touched or not, and the samples in contact.
 
@@ -258,20 +259,27 @@ def surface(
     """
     deflection, touching = np.zeros(len(time)), np.zeros(len(time), bool)
     # Depth at which noise lets the force show: the first touch meets a tissue at rest.
-    depth = max(float(position[touches[0].met]), 0.0) + least if touches else 0.0
-    lost, since = 0.0, 0
-    for touch in touches:
-        met, left = float(position[touch.met]), float(position[touch.lost - 1])
-        late = lost > 0 and met > depth
+    depth = max(float(position[contacts[0].force_begin]), 0.0) + threshold if contacts else 0.0
+    separation, since = 0.0, 0
+    for touch in contacts:
+        contact_depth, left = (
+            float(position[touch.force_begin]),
+            float(position[touch.force_end - 1]),
+        )
+        is_deeper = separation > 0 and contact_depth > depth
         # Only a force shows that a separated tissue has come back.
-        begin = touch.met if lost > 0 else touch.first
-        rows = slice(begin, touch.lost if left > depth else touch.end)
+        begin = touch.force_begin if separation > 0 else touch.first
+        rows = slice(begin, touch.force_end if left > depth else touch.end)
         deflection[rows], touching[rows] = position[rows], True
-        if lost > 0:
+        if separation > 0:
             gap = slice(since, rows.start)
             part = (time[gap] - time[since - 1]) / (time[rows.start] - time[since - 1])
-            deflection[gap] = lost * ((min(met, lost) if late else least) / lost) ** part
-        lost, since = left if left > depth else 0.0, rows.stop
+            deflection[gap] = (
+                separation
+                * ((min(contact_depth, separation) if is_deeper else threshold) / separation)
+                ** part
+            )
+        separation, since = left if left > depth else 0.0, rows.stop
     # The deflection after the last touch has no effect; a jump would be a velocity.
-    deflection[since:] = lost
+    deflection[since:] = separation
     return np.maximum(deflection, 0.0), touching

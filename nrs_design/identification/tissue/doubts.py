@@ -77,14 +77,14 @@ def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:
 def _units(trial: Trial) -> Iterator[str]:
     """Doubt a record of a size that no probe of a robot meets: its units are likely others."""
     rotational = trial.record.rotational
-    for values, what, name, unit in (
+    for values, quantity, name, unit in (
         (trial.motion.deflection, "deflection", ("deflection", "angle"), ("m", "rad")),
         (trial.measured, "torque" if rotational else "force", ("force", "torque"), ("N", "N*m")),
     ):
         span = float(np.ptp(values))
         field, si = f"recorded_{name[rotational]}", unit[rotational]
         if question := doubt_size(field, span, si, f"{span:.3g}"):
-            yield f"the {what} spans {span:.3g} {si}: {question} (--map names another)"
+            yield f"the {quantity} spans {span:.3g} {si}: {question} (--map names another)"
     yield from doubt_step(trial.step)
 
 
@@ -165,13 +165,13 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     groups = np.array_split(residuals[order], _BINS)
     means = np.array([group.mean() for group in groups])
     sizes = np.array([len(group) for group in groups])
-    within = sum(float(np.sum((g - m) ** 2)) for g, m in zip(groups, means, strict=True))
-    within /= len(residuals) - _BINS
-    between = float(sizes @ (means - residuals.mean()) ** 2) / (_BINS - 1)
-    if within == 0.0:
+    noise = sum(float(np.sum((g - m) ** 2)) for g, m in zip(groups, means, strict=True))
+    noise /= len(residuals) - _BINS
+    effect = float(sizes @ (means - residuals.mean()) ** 2) / (_BINS - 1)
+    if noise == 0.0:
         return 0.0, 1.0
-    follows = max(0.0, (between - within) * (_BINS - 1) / len(residuals))
-    return follows**0.5, float(fdtrc(_BINS - 1, len(residuals) - _BINS, between / within))
+    power = max(0.0, (effect - noise) * (_BINS - 1) / len(residuals))
+    return power**0.5, float(fdtrc(_BINS - 1, len(residuals) - _BINS, effect / noise))
 
 
 def _signs(trial: Trial, residuals: Array) -> Iterator[str]:
@@ -202,28 +202,28 @@ def _size(trial: Trial, residuals: Array) -> Iterator[str]:
 
 
 def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
-    touching = trial.touching[trial.used]
-    inside = residuals[touching]
+    touching = trial.touching[trial.fit_mask]
+    contact_residuals = residuals[touching]
     motion, span = trial.motion, trial.span
-    velocity = motion.velocity[trial.used][touching]
-    wander, _ = structure(motion.time[trial.used], residuals)
-    for (size, p), test, what in (
-        (structure(trial.deflection[touching], inside), "F-test", _NOT_LINEAR),
-        (structure(velocity, inside), "F-test", _OTHERWISE_DAMPED),
+    velocity = motion.velocity[trial.fit_mask][touching]
+    wander, _ = structure(motion.time[trial.fit_mask], residuals)
+    for (size, p), test, pattern in (
+        (structure(trial.deflection[touching], contact_residuals), "F-test", _NOT_LINEAR),
+        (structure(velocity, contact_residuals), "F-test", _OTHERWISE_DAMPED),
         ((wander, ljung_box(residuals)), "Ljung-Box", _WANDERING),
     ):
         if size > LARGEST_STRUCTURE * span and p < WHITE:
             # A p-value that leaves the floats is not 0.
             p_text = f"p = {p:.1g}" if p > 1e-99 else "p < 1e-99"
             part = f"{100 * size / span:.2g} % of the range of the force, {test} {p_text}"
-            yield f"the residuals {what} ({part})"
+            yield f"the residuals {pattern} ({part})"
 
 
 def _drift(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:
     """Doubt a tare that moves, straight or bent, where no air was asked."""
     if trial.contact is not None:
         return
-    time = trial.motion.time[trial.used]
+    time = trial.motion.time[trial.fit_mask]
     part = (time - time[0]) / (time[-1] - time[0])
     gain = _gain(residuals, sensitivities, np.column_stack([part, part**2]))
     if gain > _BIC:
@@ -251,15 +251,15 @@ def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
 
 def _conditioning(trial: Trial, residuals: Array) -> Iterator[str]:
     """Compare the first loading cycle with the later ones (Mullins effect)."""
-    rest, fitted = np.full(len(trial.force), np.nan), np.full(len(trial.force), np.nan)
-    rest[trial.used] = residuals
-    fitted[trial.used] = trial.measured - residuals - (trial.measured - residuals).min()
+    errors, fitted = np.full(len(trial.force), np.nan), np.full(len(trial.force), np.nan)
+    errors[trial.fit_mask] = residuals
+    fitted[trial.fit_mask] = trial.measured - residuals - (trial.measured - residuals).min()
     gains = []
     for cycle in trial.cycles:
-        inside = np.isfinite(rest[cycle])
-        f = fitted[cycle][inside]
-        if inside.sum() >= _BINS and np.ptp(f) > 0.5 * trial.span:
-            gains.append(float(f @ rest[cycle][inside]) / float(f @ f))
+        cycle_mask = np.isfinite(errors[cycle])
+        f = fitted[cycle][cycle_mask]
+        if cycle_mask.sum() >= _BINS and np.ptp(f) > 0.5 * trial.span:
+            gains.append(float(f @ errors[cycle][cycle_mask]) / float(f @ f))
     if len(gains) < 3:
         return
     first, later = gains[0], np.array(gains[1:])

@@ -21,33 +21,33 @@ class TissueIdentification(AbstractIdentification[TissueRecord]):
     """All laws on the same records, and the choice among them."""
 
     models: tuple[ModelFit, ...]  # In the order of `LAWS`
-    chosen: ModelFit  # The chosen law
+    model: ModelFit  # The chosen law
     reason: str  # Reason of the choice
     tangent: Tangent | None = None  # Tangent of the chosen law at a preload
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """What speaks against the chosen law."""
-        return self.chosen.doubts
+        return self.model.doubts
 
     @property
     def caveats(self) -> tuple[str, ...]:
         """What to know before a proof rests on the chosen law: a better law, and doubts."""
         best = min(self.models, key=lambda model: model.bic)
-        if best is self.chosen:
-            return self.chosen.doubts
+        if best is self.model:
+            return self.model.doubts
         better = (
-            f"{best.law.name} describes the records better than {self.chosen.law.name} "
-            f"(BIC {self.chosen.bic - best.bic:.4g} less)"
+            f"{best.law.name} describes the records better than {self.model.law.name} "
+            f"(BIC {self.model.bic - best.bic:.4g} less)"
         )
-        return (better, *self.chosen.doubts)
+        return (better, *self.model.doubts)
 
     @property
     def covers(self) -> str:
         """Coverage of the ranges, in words."""
         if len(self.records) == 1:
             return "what this one record leaves open, with 95 % confidence, and no other specimen"
-        return COVERS[self.chosen.coverage]
+        return COVERS[self.model.coverage]
 
     @property
     def rotational(self) -> bool:
@@ -63,7 +63,7 @@ def identify_tissue(
     preload: tuple[float, float] | None = None,
     progress: Progress = silent,
     *,
-    declared: bool = False,
+    is_declared: bool = False,
 ) -> TissueIdentification:
     """Fit all laws to all records, linear or rotational, and choose; a named law is chosen anyway.
 
@@ -84,13 +84,15 @@ def identify_tissue(
     for name, kind in LAWS.items():
         progress(name)
         models.append(fit_model(kind, trials, coverage))
-    chosen, reason = _choose(models) if law is None else _keep_law(models, law, declared=declared)
-    about = None
-    if preload is not None and isinstance(chosen.law, AbstractNonlinearLaw):
-        about = tangent_of(chosen, preload)
+    model, reason = (
+        _choose(models) if law is None else _keep_law(models, law, is_declared=is_declared)
+    )
+    tangent = None
+    if preload is not None and isinstance(model.law, AbstractNonlinearLaw):
+        tangent = tangent_of(model, preload)
     elif preload is not None:
         reason += " It is linear, and the same at every preload."
-    return TissueIdentification(tuple(records), tuple(models), chosen, reason, about)
+    return TissueIdentification(tuple(records), tuple(models), model, reason, tangent)
 
 
 def _check(records: Sequence[TissueRecord]) -> None:
@@ -103,17 +105,17 @@ def _check(records: Sequence[TissueRecord]) -> None:
             path=odd.source.path,
             remedy="identify them one after the other",
         )
-    by_hash: dict[str, TissueRecord] = {}
+    records_by_hash: dict[str, TissueRecord] = {}
     for record in records:
-        if record.source.sha256 in by_hash:
-            twin = by_hash[record.source.sha256]
+        if record.source.sha256 in records_by_hash:
+            twin = records_by_hash[record.source.sha256]
             raise DataError(
                 f"has the same content as {twin.source.path}: a record counted twice would "
                 "narrow the interval",
                 path=record.source.path,
                 remedy="name it once",
             )
-        by_hash[record.source.sha256] = record
+        records_by_hash[record.source.sha256] = record
 
 
 def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
@@ -121,21 +123,21 @@ def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
     sound = [model for model in models if not model.doubts]
     if not sound:
         return best, f"{best.law.name} has the least BIC, but no law is free of doubts."
-    chosen = min(sound, key=lambda model: model.bic)
-    if chosen is best:
-        return chosen, f"{chosen.law.name} has the least BIC, and no doubts."
-    doubted = [model.law.name for model in models if model.bic < chosen.bic]
-    return chosen, (
-        f"{chosen.law.name} has the least BIC among the laws that the records determine; "
+    model = min(sound, key=lambda model: model.bic)
+    if model is best:
+        return model, f"{model.law.name} has the least BIC, and no doubts."
+    doubted = [model.law.name for model in models if model.bic < model.bic]
+    return model, (
+        f"{model.law.name} has the least BIC among the laws that the records determine; "
         f"{', '.join(doubted)} would have less, but with doubts."
     )
 
 
-def _keep_law(models: Sequence[ModelFit], law: str, *, declared: bool) -> tuple[ModelFit, str]:
-    chosen = next(model for model in models if model.law.name == law)
+def _keep_law(models: Sequence[ModelFit], law: str, *, is_declared: bool) -> tuple[ModelFit, str]:
+    model = next(model for model in models if model.law.name == law)
     best, _ = _choose(models)
-    agrees = "as by the comparison" if best is chosen else f"the comparison prefers {best.law.name}"
-    if not declared:
-        return chosen, f"{law} was asked for; {agrees}."
-    other = "" if best is chosen else f" (--model {best.law.name} would write that)"
-    return chosen, f"{law} is the law of the spec, which is kept; {agrees}{other}."
+    agrees = "as by the comparison" if best is model else f"the comparison prefers {best.law.name}"
+    if not is_declared:
+        return model, f"{law} was asked for; {agrees}."
+    other = "" if best is model else f" (--model {best.law.name} would write that)"
+    return model, f"{law} is the law of the spec, which is kept; {agrees}{other}."

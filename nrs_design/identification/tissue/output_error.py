@@ -66,7 +66,7 @@ class RecordFit:
         estimates = known.estimates(np.log(self.law.values), confidence)
         half = student_quantile(known.degrees, confidence)
         return tuple(
-            estimate.from_zero(half * float(error)) if zero else estimate
+            estimate.extend_to_zero(half * float(error)) if zero else estimate
             for estimate, error, zero in zip(
                 estimates, known.errors, reaches_zero(self.law, known), strict=True
             )
@@ -80,7 +80,7 @@ class RecordFit:
     @property
     def bic(self) -> float:
         """Schwarz's criterion, with the variance of the noise among the parameters."""
-        count = int(self.trial.used.sum())
+        count = int(self.trial.fit_mask.sum())
         fidelity = 2 * count * float(np.log(max(self.rmse, TINY)))
         return fidelity + (self.free + 1) * float(np.log(count))
 
@@ -138,23 +138,25 @@ def _uncertainty(trial: Trial, J: Array, residuals: Array) -> Uncertainty:
 def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point:
     problem = start.problem
     p = len(problem.kind.kinds)
-    reach = np.full(len(start.values) - p, _ZERO_RANGE)
-    low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
+    zero_range = np.full(len(start.values) - p, _ZERO_RANGE)
+    low, high = np.append(bounds[0], -zero_range), np.append(bounds[1], zero_range)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
     last = [start]
 
-    def at(x: Array) -> Point:
+    def point(x: Array) -> Point:
         # The search requests derivatives at the point of the last errors.
         if not np.array_equal(x, last[0].values):
             last[0] = Point(problem, x.copy())
         return last[0]
 
     def slopes(x: Array) -> Array:
-        J = at(x).slopes
+        J = point(x).slopes
         J[:, p:] *= problem.travel
         return J
 
     first = np.clip(start.values, low + room, high - room)
-    found, _ = search(lambda x: at(x).misfit, slopes, first, bounds=(low, high), converged=accuracy)
-    return at(found)
+    found, _ = search(
+        lambda x: point(x).misfit, slopes, first, bounds=(low, high), converged=accuracy
+    )
+    return point(found)

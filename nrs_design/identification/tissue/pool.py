@@ -86,15 +86,15 @@ def pool(fits: Sequence[RecordFit], confidence: float = CONFIDENCE) -> tuple[Est
 def _pool(logs: Array, variances: Array, confidence: float) -> Estimate:
     count = len(logs)
     weights = 1 / (variances + _variance_between_records(logs, variances))
-    within = 1 / float(weights.sum())
-    weights *= within
+    within_variance = 1 / float(weights.sum())
+    weights *= within_variance
     mean = float(weights @ logs)
     variance = float(weights @ (logs - mean) ** 2) / (count - 1)
     if 1 / float(weights @ weights) < _FEWEST:
         # One record decides: there is no scatter to tell the error from.
-        variance = max(variance, within)
+        variance = max(variance, within_variance)
     error = math.sqrt(variance)
-    return Estimate.from_log(mean, student_quantile(count - 1, confidence) * error)
+    return Estimate.build_from_log(mean, student_quantile(count - 1, confidence) * error)
 
 
 def _variance_between_records(logs: Array, variances: Array) -> float:

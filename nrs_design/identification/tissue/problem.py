@@ -51,8 +51,8 @@ def place_offsets(
     places = {name: trial.side * fitted[name] for name in (TARE, DRIFT) if name in fitted}
     if shift is not None:
         return {ZERO: trial.reference + trial.side * shift, **places}
-    at_rest = Motion(np.array([0.0, 1.0]), np.ones(2))
-    if not (stiffness := float(law.simulate(at_rest)[0])):
+    unit_motion = Motion(np.array([0.0, 1.0]), np.ones(2))
+    if not (stiffness := float(law.simulate(unit_motion)[0])):
         return places
     if trial.contact is None:
         del places[TARE]
@@ -74,13 +74,13 @@ def scan(
 
     def solve(*regressors: Array) -> tuple[float, ...]:
         """Fit positive coefficients: least squares, what comes out too small is lifted."""
-        X = reject(basis, np.column_stack([regressor[trial.used] for regressor in regressors]))
+        X = reject(basis, np.column_stack([regressor[trial.fit_mask] for regressor in regressors]))
         size = column_sizes(X)
         scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
         if (scaled < floor).any() and len(size) > 1:
             # Without the offending terms, as a nonnegative fit would have it.
-            alone = (X / size).T @ force
-            scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
+            projections = (X / size).T @ force
+            scaled = np.where(scaled < floor, 0.0, np.maximum(projections, floor))
         return tuple((np.maximum(scaled, floor) / size).tolist())
 
     return kind.guesses(trial.motion, solve)
@@ -95,8 +95,8 @@ def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     k = trial.span / float(np.ptp(trial.deflection))
     stiffness = (k / _STIFFNESS_BOX, k * _STIFFNESS_BOX)
     damping = (k * trial.step * _SHORTEST, k * trial.duration * _LONGEST)
-    reach = float(np.max(np.abs(trial.deflection)))
-    power = reach ** (LEAST_EXPONENT - 1), reach**LARGEST_EXPONENT
+    depth = float(np.max(np.abs(trial.deflection)))
+    power = depth ** (LEAST_EXPONENT - 1), depth**LARGEST_EXPONENT
     bounds = {
         STIFFNESS: stiffness,
         DAMPING: damping,
@@ -128,7 +128,7 @@ class LeastSquaresProblem:
         """Force that a unit of each offset adds to all samples, shape (n, m)."""
         trial = self.trial
         columns = {
-            TARE: np.ones(len(trial.used)),
+            TARE: np.ones(len(trial.fit_mask)),
             CONTACT: trial.touching.astype(float),
             DRIFT: trial.motion.time - trial.motion.time[0],
         }
@@ -137,13 +137,13 @@ class LeastSquaresProblem:
     @cached_property
     def offsets(self) -> Array:
         """The columns of the offsets in the used samples."""
-        return self.offset_columns[self.trial.used]
+        return self.offset_columns[self.trial.fit_mask]
 
     @cached_property
     def begins(self) -> tuple[slice, ...]:
         """Stretches with an unknown initial state, for a law with memory."""
-        remembers = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
-        return self.trial.unrested if remembers else ()
+        has_memory = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
+        return self.trial.unrested if has_memory else ()
 
     @cached_property
     def travel(self) -> float:
@@ -215,7 +215,7 @@ class Point:
     @cached_property
     def force(self) -> Array:
         """Force of the law in the used samples, shape (n,)."""
-        return self._pushing(self.law.simulate(self.motion))[self.problem.trial.used]
+        return self._pushing(self.law.simulate(self.motion))[self.problem.trial.fit_mask]
 
     def _pushing(self, values: Array) -> Array:
         """Return a force, or its derivatives, without what a surface that nothing touches has."""
@@ -228,7 +228,7 @@ class Point:
 
         The force of a relaxing element at the beginning is not known; it fades exponentially.
         """
-        return self._fading[self.problem.trial.used]
+        return self._fading[self.problem.trial.fit_mask]
 
     @cached_property
     def _fading(self) -> Array:
@@ -289,7 +289,7 @@ class Point:
         if len(self.values) > len(law.kinds):
             assert isinstance(law, AbstractNonlinearLaw)
             J = np.column_stack([J, -law.slope(motion)])
-        J = self._pushing(J)[self.problem.trial.used]
+        J = self._pushing(J)[self.problem.trial.fit_mask]
         return J + self._growing() if self.problem.begins else J
 
     def _growing(self) -> Array:
@@ -299,12 +299,12 @@ class Point:
             return np.zeros((len(self.force), len(self.values)))
         # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
         grows = (
-            problem.ages[problem.trial.used]
+            problem.ages[problem.trial.fit_mask]
             / tau
             * (self.states @ self.best[problem.offsets.shape[1] :])
         )
-        near = (Point(problem, self.values + step).law for step in _STEP * np.eye(len(self.values)))
-        slopes = [math.log((law.relaxation_time or tau) / tau) / _STEP for law in near]
+        laws = (Point(problem, self.values + step).law for step in _STEP * np.eye(len(self.values)))
+        slopes = [math.log((law.relaxation_time or tau) / tau) / _STEP for law in laws]
         return np.outer(grows, slopes)
 
     @property

@@ -30,7 +30,7 @@ class Tangent:
     # low, high: preloads: deflections in m (rad).
     low: float
     high: float
-    about: float  # A deflection in their middle, of few digits, in m (rad)
+    operating_point: float  # A deflection in their middle, of few digits, in m (rad)
     # The power law itself: stiffness and damping at that deflection, and the exponent.
     power: tuple[Estimate, Estimate, Estimate]
 
@@ -45,11 +45,11 @@ def check_preload(
             remedy="leave out --preload, or choose --model hunt-crossley",
         )
     low, high = preload
-    reached = min(float(trial.deflection.max()) for trial in trials)
-    if not 0 < low <= high <= reached:
+    common_depth = min(float(trial.deflection.max()) for trial in trials)
+    if not 0 < low <= high <= common_depth:
         raise DataError(
             f"preloads from {low:.6g} to {high:.6g} are not within the deflections up to "
-            f"{reached:.6g} that every record reaches",
+            f"{common_depth:.6g} that every record reaches",
             remedy="give --preload LOW..HIGH within them, counted from the contact",
         )
 
@@ -65,12 +65,12 @@ def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     ends = [_ranges_near(model, depth) for depth in (low, high)]
     middle = KelvinVoigt(*law.tangent((low + high) / 2))
     ranges = tuple(
-        Estimate(value, min(at_low.low, at_high.low), max(at_low.high, at_high.high))
-        for value, at_low, at_high in zip(middle.values, *ends, strict=True)
+        Estimate(value, min(low_end.low, high_end.low), max(low_end.high, high_end.high))
+        for value, low_end, high_end in zip(middle.values, *ends, strict=True)
     )
-    about = min(max(float(f"{(low + high) / 2:.{_DIGITS}g}"), low), high)
-    stiffness, damping, exponent = _ranges_near(model, about, with_exponent=True)
-    return Tangent(middle, ranges, low, high, about, (stiffness, damping, exponent))
+    operating_point = min(max(float(f"{(low + high) / 2:.{_DIGITS}g}"), low), high)
+    stiffness, damping, exponent = _ranges_near(model, operating_point, with_exponent=True)
+    return Tangent(middle, ranges, low, high, operating_point, (stiffness, damping, exponent))
 
 
 def _ranges_near(
@@ -95,8 +95,8 @@ def _estimates(fit: RecordFit, depth: float, level: float) -> tuple[Estimate, ..
     law = fit.law
     assert isinstance(law, AbstractNonlinearLaw)
     # By the logarithms of the parameters; the exponent is the last of them.
-    alone = np.eye(len(law.values))[-1:]
-    chain = np.vstack([law.tangent_sensitivities(depth), alone])
+    exponent_row = np.eye(len(law.values))[-1:]
+    chain = np.vstack([law.tangent_sensitivities(depth), exponent_row])
     covariance = chain @ fit.uncertainty.covariance @ chain.T
     known = replace(fit.uncertainty, covariance=covariance)
     return known.estimates(np.log([*law.tangent(depth), law.values[-1]]), level)

@@ -43,7 +43,7 @@ class Trial:
     motion: Motion  # Deflection of the tissue, positive into it and 0 in air; n samples
     position: Array  # Shape (n,). The same, but negative in air.
     force: Array  # Shape (n,). On the tissue in N (N m), with any tare.
-    used: Flags  # Shape (n,). Samples that are fitted.
+    fit_mask: Flags  # Shape (n,). Samples that are fitted.
     touching: Flags  # Shape (n,). Samples in contact.
     reference: float  # Position that the deflection is counted from, m (rad)
     side: int  # 1 if the tissue is where positions are larger, else -1
@@ -60,20 +60,20 @@ class Trial:
         before ``start``, or before a pause, no sample tells.
         """
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
-        cut = self.preparation.start or self.record.pauses
-        if self.contact is None and not loaded and not cut:
+        is_cut = self.preparation.start or self.record.pauses
+        if self.contact is None and not loaded and not is_cut:
             return ()
-        return tuple(slice(a, b) for a, b in runs(self.touching) if self.used[a:b].any())
+        return tuple(slice(a, b) for a, b in runs(self.touching) if self.fit_mask[a:b].any())
 
     @property
     def measured(self) -> Array:
         """Force of the samples that are used."""
-        return self.force[self.used]
+        return self.force[self.fit_mask]
 
     @property
     def deflection(self) -> Array:
         """Deflection of the samples that are used."""
-        return self.motion.deflection[self.used]
+        return self.motion.deflection[self.fit_mask]
 
     @property
     def duration(self) -> float:
@@ -110,12 +110,12 @@ class Trial:
 
     def thinned(self, count: int) -> Trial:
         """Return the trial with at most `most` samples, or more if few of them are used."""
-        every = min(-(-len(self.force) // count), max(1, int(self.used.sum()) // _LEAST_USED))
-        if every == 1:
+        stride = min(-(-len(self.force) // count), max(1, int(self.fit_mask.sum()) // _LEAST_USED))
+        if stride == 1:
             return self
-        pick = slice(None, None, every)
+        pick = slice(None, None, stride)
         motion = Motion(self.motion.time[pick], self.motion.deflection[pick])
-        names = ("position", "force", "used", "touching")
+        names = ("position", "force", "fit_mask", "touching")
         return replace(self, motion=motion, **{name: getattr(self, name)[pick] for name in names})
 
 
@@ -125,34 +125,34 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
     Air and drift are looked for by default, and the zeros of force and deflection are fitted.
     """
     settings = preparation or Preparation()
-    kept, cuts = _window(record, settings)
-    contact = find_contact(kept) if settings.contact == "auto" else None
-    x, time = kept.motion.deflection, kept.motion.time
+    window, cuts = _window(record, settings)
+    contact = find_contact(window) if settings.contact == "auto" else None
+    x, time = window.motion.deflection, window.motion.time
     side = _side(x) if contact is None else contact.side
     reference = side * float(np.min(side * x)) if contact is None else contact.zero
     deflection = position = side * (x - reference)
-    used = touching = np.ones(len(x), bool)
+    fit_mask = touching = np.ones(len(x), bool)
     if contact is not None:
         width = _EDGE * float(np.ptp(x))
         deflection, touching = surface(time, position, contact.touches, width)
         edge = _edge(position, width, contact)
         edge |= touching & ~inner(touching)
-        free = contact.beyond & ~touching & ~edge
+        free = contact.tissue_side & ~touching & ~edge
         cuts += _unused_text(time, edge, "at the edge of contact")
         cuts += _unused_text(
             time, free, "no contact yet: the tissue has not come back from a touch"
         )
-        used = ~edge & ~free
-    if used.sum() < FEWEST or np.ptp(x[used]) == 0:
+        fit_mask = ~edge & ~free
+    if fit_mask.sum() < FEWEST or np.ptp(x[fit_mask]) == 0:
         raise DataError(
-            f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
+            f"{fit_mask.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
             path=record.source.path,
             remedy="record longer, or say by --set contact=given, start=S or end=S what to use",
         )
-    drift = _shows_drift(time, used & ~touching)
+    drift = _shows_drift(time, fit_mask & ~touching)
     return Trial(
-        record, settings, Motion(time, deflection), position, side * kept.force, used, touching,
-        reference, side, contact, drift, tuple(cuts), find_cycles(deflection),
+        record, settings, Motion(time, deflection), position, side * window.force, fit_mask,
+        touching, reference, side, contact, drift, tuple(cuts), find_cycles(deflection),
     )  # fmt: skip
 
 
@@ -185,17 +185,17 @@ def _window(record: TissueRecord, settings: Preparation) -> tuple[TissueRecord, 
     time = record.motion.time
     start = -np.inf if settings.start is None else settings.start
     end = np.inf if settings.end is None else settings.end
-    inside = (time >= start) & (time <= end)
-    if inside.sum() < FEWEST:
+    mask = (time >= start) & (time <= end)
+    if mask.sum() < FEWEST:
         raise DataError(
-            f"{inside.sum()} samples lie between start and end, at least {FEWEST} are needed",
+            f"{mask.sum()} samples lie between start and end, at least {FEWEST} are needed",
             path=record.source.path,
             remedy=f"the record lasts from 0 s to {time[-1]:.6g} s",
         )
-    motion = Motion(time[inside], record.motion.deflection[inside])
-    force = (-record.force if settings.negate else record.force)[inside]
-    kept = replace(record, motion=motion, force=force)
-    return kept, _unused_text(time, ~inside, "outside start and end")
+    motion = Motion(time[mask], record.motion.deflection[mask])
+    force = (-record.force if settings.negate else record.force)[mask]
+    window = replace(record, motion=motion, force=force)
+    return window, _unused_text(time, ~mask, "outside start and end")
 
 
 def _side(x: Array) -> int:
@@ -205,8 +205,8 @@ def _side(x: Array) -> int:
 
 def _unused_text(time: Array, flags: Flags, reason: str) -> list[str]:
     """Return a text about unused samples, if there are some."""
-    inside = time[flags]
-    if not len(inside):
+    unused_times = time[flags]
+    if not len(unused_times):
         return []
-    times = span(inside[0], inside[-1], "s")
-    return [f"{counted(len(inside), 'sample')} at {times}: {reason}"]
+    times = span(unused_times[0], unused_times[-1], "s")
+    return [f"{counted(len(unused_times), 'sample')} at {times}: {reason}"]

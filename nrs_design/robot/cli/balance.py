@@ -24,28 +24,28 @@ def balance(spec: SpecFile) -> Answer:
     from nrs_design.robot.reporting.robot import balance_table
 
     loaded, robot_spec, robot = run_robot(spec)
-    wanted = design_balance(robot_spec, robot)
-    without, left = (
+    design = design_balance(robot_spec, robot)
+    unbalanced, balanced = (
         {"rms": root_mean_square(t).tolist(), "largest": np.abs(t).max(axis=0).tolist()}
-        for t in examine_balance(robot, wanted)
+        for t in examine_balance(robot, design)
     )
     content: dict[str, Any] = {
-        "tilt": wanted.tilt,
-        "left": asdict(wanted.left),
-        "right": asdict(wanted.right),
-        "without_balance": without,
-        "with_balance": left,
+        "tilt": design.tilt,
+        "left": asdict(design.left_leg),
+        "right": asdict(design.right_leg),
+        "without_balance": unbalanced,
+        "with_balance": balanced,
         "units": {"mass": "kg", "distance": "m", "stiffness": "N/m", "torque": "N*m"},
     }
 
     def show() -> None:
-        print_blocks(loaded.spec.name, [balance_table(loaded, wanted)])
+        print_blocks(loaded.spec.name, [balance_table(loaded, design)])
         print_table(
             "",
             ["static torque of theta1, theta2, theta3 [N m]", "root mean square", "largest"],
             [
                 [name, *(", ".join(f"{n:.3f}" for n in torque[key]) for key in torque)]
-                for name, torque in (("without balance", without), ("with balance", left))
+                for name, torque in (("without balance", unbalanced), ("with balance", balanced))
             ],
         )
 

@@ -65,12 +65,12 @@ def dynamics(
         content |= _shares(robot)
     else:
         motion = (velocity or "0,0,0", "--velocity"), (acceleration or "0,0,0", "--acceleration")
-        content |= _at_pose(robot, read_pose(pose, robot), *(three_numbers(*m) for m in motion))
+        content |= _solve_pose(robot, read_pose(pose, robot), *(three_numbers(*m) for m in motion))
     facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, _LABELS))
 
 
-def _at_pose(robot: Robot, pose: Three, velocity: Three, acceleration: Three) -> dict[str, Any]:
+def _solve_pose(robot: Robot, pose: Three, velocity: Three, acceleration: Three) -> dict[str, Any]:
     from nrs_design.robot.models import dynamics as full
     from nrs_design.robot.models.correction import simplified_dynamics
 

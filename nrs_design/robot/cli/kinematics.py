@@ -50,16 +50,16 @@ def kinematics(
         raise typer.BadParameter("give --pose or --joints, not both")
     if joints is not None:
         found = direct_kinematics(robot, three_numbers(joints, "--joints"))
-        content = _at_pose(robot, tuple(map(float, found)))
+        content = _solve_pose(robot, tuple(map(float, found)))
     elif pose is not None:
-        content = _at_pose(robot, read_pose(pose, robot))
+        content = _solve_pose(robot, read_pose(pose, robot))
     else:
         content = _workspace(robot)
     facts = loaded.facts | content
     return Answer(lambda: facts, lambda: print_quantities(content, _LABELS))
 
 
-def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
+def _solve_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
     from nrs_design.robot.models.geometry import reach_margin
     from nrs_design.robot.models.kinematics import (
         coupler_margin,

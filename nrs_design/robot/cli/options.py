@@ -90,6 +90,6 @@ def _rows(label: str, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
         yield label, value if isinstance(value, list) else [value]
 
 
-def lists(found: object, *names: str) -> dict[str, Any]:
+def lists(result: object, *names: str) -> dict[str, Any]:
     """Return the arrays of a result by name, as JSON has them."""
-    return {name: getattr(found, name).tolist() for name in names}
+    return {name: getattr(result, name).tolist() for name in names}

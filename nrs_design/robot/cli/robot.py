@@ -17,5 +17,5 @@ robot = typer.Typer(
     help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
     epilog="The page of a robot: nrs-design report SPEC.",
 )
-for one in (check, kinematics, dynamics, correction, balance, track):
-    robot.command(one.__name__)(one)
+for subcommand in (check, kinematics, dynamics, correction, balance, track):
+    robot.command(subcommand.__name__)(subcommand)

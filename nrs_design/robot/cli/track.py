@@ -56,10 +56,10 @@ def track(
         one
         for name in names
         for one in build_tracks(robot_spec, robot, name, period)
-        if experiment in ("all", one.experiment.moved)
+        if experiment in ("all", one.experiment.coordinate)
     ]
-    with progress("simulating") as tell:
-        runs = [record.summary() for record in simulate(tracks, tell)]
+    with progress("simulating") as report:
+        runs = [record.summary() for record in simulate(tracks, report)]
     content: dict[str, Any] = {
         "base_tilt": robot.base_tilt,
         "runs": runs,

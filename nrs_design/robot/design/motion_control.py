@@ -49,16 +49,16 @@ class LoadModel:
         simplified = simplified_dynamics(self.robot, pose)
         return LoadTerms(angle, K[:, None] * simplified.Ms, K * simplified.Gs)
 
-    def follow(self, angle: Array, known: LoadTerms | None) -> LoadTerms:
+    def follow(self, angle: Array, previous: LoadTerms | None) -> LoadTerms:
         """Return the terms at encoder angles, computing them only where an encoder has moved."""
-        if known is None:
+        if previous is None:
             return self.terms(angle)
-        moved = np.any(angle != known.angle, axis=-1)
-        if not moved.any():
-            return known
-        fresh = self.terms(angle[moved])
-        inertia, gravity = known.inertia.copy(), known.gravity.copy()
-        inertia[moved], gravity[moved] = fresh.inertia, fresh.gravity
+        is_changed = np.any(angle != previous.angle, axis=-1)
+        if not is_changed.any():
+            return previous
+        fresh = self.terms(angle[is_changed])
+        inertia, gravity = previous.inertia.copy(), previous.gravity.copy()
+        inertia[is_changed], gravity[is_changed] = fresh.inertia, fresh.gravity
         return LoadTerms(angle, inertia, gravity)
 
 
@@ -110,9 +110,9 @@ class ComputedTorque(AbstractMotionLaw):
     def step(self, state: LawState, reference: JointMotion, angle: Array) -> tuple[Array, LawState]:
         """Return the commands and the next state."""
         error, rate = self.errors(state, reference, angle)
-        wanted = reference.acceleration + (self.Kp * error + self.Kd * rate) / self.encoder_ratio
+        demand = reference.acceleration + (self.Kp * error + self.Kd * rate) / self.encoder_ratio
         load = self.load.follow(angle, state.load)
-        torque = (load.inertia @ wanted[..., None])[..., 0] + load.gravity
+        torque = (load.inertia @ demand[..., None])[..., 0] + load.gravity
         return self.command_per_torque * torque, LawState(error, load)
 
 
@@ -184,13 +184,13 @@ def _drive_numbers(spec: RobotSpec) -> dict[str, float]:
 
 
 def _proportional_derivative(spec: RobotSpec) -> ProportionalDerivative:
-    given, wanted = control_of(spec).motion_loop, _root_locus(spec)
+    given, design = control_of(spec).motion_loop, _root_locus(spec)
     Kd = to_float32(
-        Fraction(wanted.derivative_gain)
+        Fraction(design.derivative_gain)
         if given.derivative_gain is None
         else given.derivative_gain.exact
     )
-    zero = Fraction(wanted.zero) if given.zero is None else given.zero.exact
+    zero = Fraction(design.zero) if given.zero is None else given.zero.exact
     return ProportionalDerivative(Kp=to_float32(Kd * zero), Kd=Kd)
 
 

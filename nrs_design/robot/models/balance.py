@@ -46,32 +46,32 @@ class LegBalance:
 class Balance:
     """The balance of both side legs, and the tilt of the base that it is made for, in rad."""
 
-    left: LegBalance
-    right: LegBalance
+    left_leg: LegBalance
+    right_leg: LegBalance
     tilt: float
 
 
 def design_balance(spec: RobotSpec, robot: Robot) -> Balance:
     """Compute the counter-masses and springs of both side legs from the `balance` of the spec."""
-    wanted = spec.balance
-    if wanted is None:
+    requirement = spec.balance
+    if requirement is None:
         raise DesignError("this robot spec has no `balance`", remedy="add it, as `init robot` does")
     left, right = (
-        _leg_balance(leg, choice, wanted.payload.si, robot.gravity)
-        for leg, choice in ((robot.legs[0], wanted.left), (robot.legs[1], wanted.right))
+        _leg_balance(leg, choice, requirement.payload.si, robot.gravity)
+        for leg, choice in ((robot.legs[0], requirement.left), (robot.legs[1], requirement.right))
     )
-    return Balance(left, right, wanted.tilt.si)
+    return Balance(left, right, requirement.tilt.si)
 
 
 def _leg_balance(leg: Leg, spec: BalancedLegSpec, payload: float, gravity: float) -> LegBalance:
     m_a, m_b, m_c = leg.crank.mass, leg.coupler.mass, leg.arm.mass
     arm_distance, coupler_distance = spec.arm_counter_arm.si, spec.coupler_counter_arm.si
     M_c = (payload * leg.l3 + m_c * spec.arm_center_of_mass.si) / arm_distance
-    beyond = payload + m_c + M_c
-    M_b = (beyond * leg.l2 + leg.coupler.first[0]) / coupler_distance
-    M_a = beyond + m_b + M_b + m_a
+    carried_mass = payload + m_c + M_c
+    M_b = (carried_mass * leg.l2 + leg.coupler.first[0]) / coupler_distance
+    M_a = carried_mass + m_b + M_b + m_a
     B_a = ((M_a - m_a) * leg.l1 + leg.crank.first[0]) / M_a
-    on_crank, on_base = spec.spring_on_crank.si, spec.spring_on_base.si
+    crank_end, base_end = spec.spring_on_crank.si, spec.spring_on_base.si
     return LegBalance(
         arm_mass=M_c,
         coupler_mass=M_b,
@@ -79,9 +79,9 @@ def _leg_balance(leg: Leg, spec: BalancedLegSpec, payload: float, gravity: float
         coupler_distance=coupler_distance,
         total_mass=M_a,
         total_distance=B_a,
-        stiffness=M_a * gravity * B_a / (on_crank * on_base),
-        spring_on_crank=on_crank,
-        spring_on_base=on_base,
+        stiffness=M_a * gravity * B_a / (crank_end * base_end),
+        spring_on_crank=crank_end,
+        spring_on_base=base_end,
     )
 
 
@@ -89,14 +89,14 @@ def balanced_robot(robot: Robot, balance: Balance) -> Robot:
     """Return the robot with its counter-masses, for its full dynamics; without the springs."""
     left, right, middle = robot.legs
     return replace(
-        robot, legs=(_weighted(left, balance.left), _weighted(right, balance.right), middle)
+        robot, legs=(_weighted(left, balance.left_leg), _weighted(right, balance.right_leg), middle)
     )
 
 
 def _weighted(leg: Leg, balance: LegBalance) -> Leg:
-    on_coupler = point_mass(balance.coupler_mass, (-balance.coupler_distance, 0.0, 0.0))
-    on_arm = point_mass(balance.arm_mass, (-balance.arm_distance, 0.0, 0.0))
-    return replace(leg, coupler=leg.coupler.plus(on_coupler), arm=leg.arm.plus(on_arm))
+    coupler_weight = point_mass(balance.coupler_mass, (-balance.coupler_distance, 0.0, 0.0))
+    arm_weight = point_mass(balance.arm_mass, (-balance.arm_distance, 0.0, 0.0))
+    return replace(leg, coupler=leg.coupler.plus(coupler_weight), arm=leg.arm.plus(arm_weight))
 
 
 def spring_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
@@ -105,9 +105,9 @@ def spring_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
     A spring acts as a weight does that has its first moment on the crank, and falls upwards. It is
     upright where the base has the tilt that it is made for.
     """
-    bare = replace(robot.without_links(), platform=MASSLESS, gravity=-1.0, base_tilt=balance.tilt)
+    bare = replace(robot.remove_links(), platform=MASSLESS, gravity=-1.0, base_tilt=balance.tilt)
     left, right, middle = bare.legs
-    legs = (_sprung(left, balance.left), _sprung(right, balance.right), middle)
+    legs = (_sprung(left, balance.left_leg), _sprung(right, balance.right_leg), middle)
     return gravity_torque(replace(bare, legs=legs), pose)
 
 
@@ -131,6 +131,6 @@ def examine_balance(robot: Robot, balance: Balance) -> tuple[Array, Array]:
 
     Shapes are (n, 3); the base has the tilt that the balance is for.
     """
-    on_base = robot.tilted(balance.tilt)
+    tilted_robot = robot.tilted(balance.tilt)
     poses = reachable_poses(robot, workspace_grid(robot, 21, 11))
-    return gravity_torque(on_base, poses), residual_torque(on_base, balance, poses)
+    return gravity_torque(tilted_robot, poses), residual_torque(tilted_robot, balance, poses)

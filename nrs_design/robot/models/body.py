@@ -28,20 +28,20 @@ class Body:
     first: tuple[float, ...]  # ``integral r dm`` in kg m
     second: tuple[tuple[float, ...], ...]  # ``integral r r' dm`` in kg m^2, 3 x 3
 
-    def plus(self, other: Body) -> Body:
+    def plus(self, addend: Body) -> Body:
         """Return both bodies as one; their frames must coincide."""
         return _body(
-            self.mass + other.mass,
-            np.add(self.first, other.first),
-            np.add(self.second, other.second),
+            self.mass + addend.mass,
+            np.add(self.first, addend.first),
+            np.add(self.second, addend.second),
         )
 
-    def placed(self, rotation: ArrayLike, origin: ArrayLike) -> Body:
+    def transform(self, rotation: ArrayLike, origin: ArrayLike) -> Body:
         """Return the body in another frame, in which a point is ``origin + rotation r``."""
         R, p = np.asarray(rotation, dtype=float), np.asarray(origin, dtype=float)
         first = R @ self.first
-        mixed = np.outer(p, first)
-        second = R @ self.second @ R.T + mixed + mixed.T + self.mass * np.outer(p, p)
+        cross_moment = np.outer(p, first)
+        second = R @ self.second @ R.T + cross_moment + cross_moment.T + self.mass * np.outer(p, p)
         return _body(self.mass, first + self.mass * p, second)
 
     @property

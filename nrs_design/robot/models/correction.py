@@ -19,7 +19,7 @@ from nrs_design.robot.models.dynamics import gravity_torque
 from nrs_design.robot.models.geometry import Posture, posture
 from nrs_design.robot.models.motion import joint_driven
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.vectors import Array, cross, root_mean_square, scale, stacked
+from nrs_design.robot.models.vectors import Array, cross, root_mean_square, scale, stack
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ def _rates(closed: Posture) -> Array:
     units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)
     motion = joint_driven(closed, units, np.zeros(3))
     middle = motion.legs[2]
-    columns = stacked((middle.alpha_1, -middle.gamma_1, motion.d_1))
+    columns = stack((middle.alpha_1, -middle.gamma_1, motion.d_1))
     return np.asarray(np.moveaxis(columns, 0, -1), dtype=np.float64)
 
 
@@ -71,7 +71,7 @@ def _platform_frame(closed: Posture) -> Array:
     middle = closed.legs[2]
     y = scale(-1.0, middle.normal)
     x = cross(y, closed.W)
-    return np.stack([stacked(x), stacked(y), stacked(closed.W)], axis=-1)
+    return np.stack([stack(x), stack(y), stack(closed.W)], axis=-1)
 
 
 SAMPLES = 720
@@ -125,8 +125,8 @@ def correct(*torques: tuple[Array, Array]) -> Correction:
 
 def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
     """Return the coefficients over one trajectory, or their means over several."""
-    chosen = (sines,) if isinstance(sines, Sine) else sines
-    return correct(*(_torques(robot, sine) for sine in chosen))
+    trajectories = (sines,) if isinstance(sines, Sine) else sines
+    return correct(*(_torques(robot, sine) for sine in trajectories))
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from nrs_design.robot.models.body import (
 from nrs_design.robot.models.geometry import LegPosture, Posture, posture
 from nrs_design.robot.models.motion import LegMotion, RobotMotion, joint_driven
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.vectors import Array, Scalar, Vector, add, dot, scale, stacked
+from nrs_design.robot.models.vectors import Array, Scalar, Vector, add, dot, scale, stack
 
 # Poses that are treated at once: their arrays stay in the processor's cache.
 BATCH = 4096
@@ -114,28 +114,28 @@ def _per_unit(torque: Callable[[Array], Array], closed: Posture) -> Array:
 
 def _gravity_in_plane(gravity: Vector, closed: Posture, leg: LegPosture) -> Vector:
     """Gravity in the frame a, b, k of a leg's plane."""
-    along = dot(gravity, leg.leg.axis)
-    across = (dot(gravity, closed.W) - leg.cos_gamma * along) / leg.sin_gamma
-    return along, across, dot(gravity, leg.normal)
+    axial = dot(gravity, leg.leg.axis)
+    transverse = (dot(gravity, closed.W) - leg.cos_gamma * axial) / leg.sin_gamma
+    return axial, transverse, dot(gravity, leg.normal)
 
 
 def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar = 1.0) -> Array:
     """Collect what every leg takes, with gravity times a weight, and hand it on to the joints."""
-    on_W: Vector = (0.0, 0.0, 0.0)
-    on_d: Scalar = 0.0
+    force_W: Vector = (0.0, 0.0, 0.0)
+    force_d: Scalar = 0.0
     for leg, rates, loads in zip(closed.legs, motion.legs, robot.loads, strict=True):
         fall = scale(weight, _gravity_in_plane(robot.gravity_vector, closed, leg))
-        on_alpha, on_gamma, on_depth = _leg_forces(motion, leg, rates, loads, fall)
-        pull = add(scale(on_alpha, leg.normal), scale(-on_gamma, leg.leg.axis))
-        on_W = add(on_W, scale(1.0 / leg.sin_gamma, pull))
-        on_d = on_d + on_depth
+        force_alpha, force_gamma, force_depth = _leg_forces(motion, leg, rates, loads, fall)
+        pull = add(scale(force_alpha, leg.normal), scale(-force_gamma, leg.leg.axis))
+        force_W = add(force_W, scale(1.0 / leg.sin_gamma, pull))
+        force_d = force_d + force_depth
     left, right, middle = closed.legs
-    theta3 = on_d / middle.beta_d
+    theta3 = force_d / middle.beta_d
     # Turning a side leg moves the crank of the middle leg too, unless the depth gives way.
-    on_W = add(on_W, scale(theta3 * middle.beta_gamma / middle.sin_gamma, middle.leg.axis))
-    theta1 = left.sin_gamma * dot(closed.u1, on_W)
-    theta2 = right.sin_gamma * dot(closed.u2, on_W)
-    return np.asarray(stacked((theta1, theta2, theta3)), dtype=np.float64)
+    force_W = add(force_W, scale(theta3 * middle.beta_gamma / middle.sin_gamma, middle.leg.axis))
+    theta1 = left.sin_gamma * dot(closed.u1, force_W)
+    theta2 = right.sin_gamma * dot(closed.u2, force_W)
+    return np.asarray(stack((theta1, theta2, theta3)), dtype=np.float64)
 
 
 def _leg_forces(
@@ -155,14 +155,14 @@ def _leg_forces(
     first = link_forces(loads[0], crank, FIXED, plane)
     second = link_forces(loads[1], coupler, _elbow(l1, crank), plane)
     third = link_forces(loads[2], arm, _coupler_end(motion, leg, rates), plane)
-    on_beta = first.angle + l1 * (crank.cos * second.v - crank.sin * second.u)
-    on_kappa = second.angle
-    on_gamma = third.angle + leg.end_gamma[0] * third.u + leg.end_gamma[1] * third.v
-    on_depth = leg.cos_gamma * third.u + leg.sin_gamma * third.v
+    force_beta = first.angle + l1 * (crank.cos * second.v - crank.sin * second.u)
+    force_kappa = second.angle
+    force_gamma = third.angle + leg.end_gamma[0] * third.u + leg.end_gamma[1] * third.v
+    force_depth = leg.cos_gamma * third.u + leg.sin_gamma * third.v
     return (
         first.alpha + second.alpha + third.alpha + leg.leg.axis_inertia * rates.alpha_2,
-        on_gamma + leg.beta_gamma * on_beta + leg.kappa_gamma * on_kappa,
-        on_depth + leg.beta_d * on_beta + leg.kappa_d * on_kappa,
+        force_gamma + leg.beta_gamma * force_beta + leg.kappa_gamma * force_kappa,
+        force_depth + leg.beta_d * force_beta + leg.kappa_d * force_kappa,
     )
 
 
@@ -178,18 +178,18 @@ def _elbow(l1: float, crank: Direction) -> PlanePoint:
 
 def _coupler_end(motion: RobotMotion, leg: LegPosture, rates: LegMotion) -> PlanePoint:
     u, v = leg.end
-    square, twice = rates.gamma_1 * rates.gamma_1, 2 * rates.gamma_1 * motion.d_1
+    square, coriolis = rates.gamma_1 * rates.gamma_1, 2 * rates.gamma_1 * motion.d_1
     return PlanePoint(
         v=v,
         v_1=leg.end_gamma[1] * rates.gamma_1 + leg.sin_gamma * motion.d_1,
         u_2=leg.end_gamma[0] * rates.gamma_2
         + leg.cos_gamma * motion.d_2
         - u * square
-        - twice * leg.sin_gamma,
+        - coriolis * leg.sin_gamma,
         v_2=leg.end_gamma[1] * rates.gamma_2
         + leg.sin_gamma * motion.d_2
         - v * square
-        + twice * leg.cos_gamma,
+        + coriolis * leg.cos_gamma,
     )
 
 

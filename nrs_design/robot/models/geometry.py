@@ -129,10 +129,10 @@ def _crank(leg: Leg, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:
     """Cosine and sine of the crank angle, from the coupler's end seen from the base joint."""
     square = x * x + y * y
     # The elbow in components along and across the line between the two.
-    along = (leg.l1 * leg.l1 + square - leg.l2 * leg.l2) / (2 * leg.l1)
+    axial = (leg.l1 * leg.l1 + square - leg.l2 * leg.l2) / (2 * leg.l1)
     with np.errstate(invalid="ignore"):
-        across = leg.elbow_sign * np.sqrt(square - along * along)
-    return (x * along - y * across) / square, (y * along + x * across) / square
+        transverse = leg.elbow_sign * np.sqrt(square - axial * axial)
+    return (x * axial - y * transverse) / square, (y * axial + x * transverse) / square
 
 
 def reach(robot: Robot, pose: ArrayLike) -> Array:
@@ -178,14 +178,14 @@ def unreachable(robot: Robot, pose: ArrayLike) -> PoseError:
     row, column = divmod(int(np.argmin(margins)), 3)
     leg = robot.legs[column]
     distance = float(reach(robot, poses[row])[column])
-    stretched = distance > (leg.longest + leg.shortest) / 2
-    limit = leg.longest if stretched else leg.shortest
+    is_stretched = distance > (leg.longest + leg.shortest) / 2
+    limit = leg.longest if is_stretched else leg.shortest
     excess = abs(distance - limit)
-    what = "overstretched" if stretched else "folded too far"
+    defect = "overstretched" if is_stretched else "folded too far"
     phi, psi, d = poses[row]
     return PoseError(
         f"the pose phi {np.degrees(phi):.4g} deg, psi {np.degrees(psi):.4g} deg, d {1e3 * d:.4g} "
-        f"mm is not reachable: the {leg.name} leg is {what} by {1e3 * excess:.4g} mm (base joint "
+        f"mm is not reachable: the {leg.name} leg is {defect} by {1e3 * excess:.4g} mm (base joint "
         f"to coupler's end {1e3 * distance:.6g} mm, limit {1e3 * limit:.6g} mm)",
         remedy="choose a depth or an angle within the workspace; see `nrs-design robot kinematics`",
     )

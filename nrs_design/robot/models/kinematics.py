@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from nrs_design.robot.models.geometry import LegPosture, PoseError, Posture, posture
 from nrs_design.robot.models.motion import joint_driven, pose_driven
 from nrs_design.robot.models.robot import Leg, Robot
-from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, stacked
+from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, stack
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class JointMotion:
     velocity: Array
     acceleration: Array
 
-    def at(self, index: int | list[int]) -> JointMotion:
+    def select(self, index: int | list[int]) -> JointMotion:
         """Return the motion at one place of the first axis, or at some."""
         return JointMotion(self.position[index], self.velocity[index], self.acceleration[index])
 
@@ -37,7 +37,7 @@ def joint_angles(closed: Posture) -> Array:
     left, right, middle = closed.legs
     theta3 = np.arctan2(middle.sin_beta, middle.cos_beta)
     angles = (_plane_angle(left.leg, closed.W), _plane_angle(right.leg, closed.W), theta3)
-    return np.asarray(stacked(angles), dtype=np.float64)
+    return np.asarray(stack(angles), dtype=np.float64)
 
 
 def _plane_angle(leg: Leg, W: Vector) -> Scalar:
@@ -60,7 +60,7 @@ def direct_kinematics(robot: Robot, joints: ArrayLike) -> Any:
     length = np.where(np.real(N[2]) > 0, length, -length)
     W = (N[0] / length, N[1] / length, N[2] / length)
     d = _depth(robot, W, theta[2])
-    return stacked((np.arcsin(-W[1]), np.arcsin(W[0]), d))
+    return stack((np.arcsin(-W[1]), np.arcsin(W[0]), d))
 
 
 def _plane_normal(leg: Leg, angle: Scalar) -> Vector:
@@ -74,11 +74,11 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
     cos_gamma = dot(leg.axis, W)
     sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
     x, y = leg.l0 + leg.l1 * np.cos(theta3), leg.l1 * np.sin(theta3)
-    along = x * cos_gamma + y * sin_gamma
-    across = leg.l3 - (x * sin_gamma - y * cos_gamma)
-    square = leg.l2**2 - across * across
+    axial = x * cos_gamma + y * sin_gamma
+    transverse = leg.l3 - (x * sin_gamma - y * cos_gamma)
+    square = leg.l2**2 - transverse * transverse
     if not np.all(np.real(square) >= 0):
-        lack = float(np.max(np.abs(np.real(across)))) - leg.l2
+        lack = float(np.max(np.abs(np.real(transverse)))) - leg.l2
         raise PoseError(
             f"no pose has these joint angles: the elbow of the {leg.name} leg is {1e3 * lack:.4g} "
             "mm too far from the endoscope axis",
@@ -86,7 +86,7 @@ def _depth(robot: Robot, W: Vector, theta3: Scalar) -> Scalar:
         )
     # Direction of the coupler: along the endoscope, or against the endoscope.
     sign = np.sign(_coupler_along(posture(robot, robot.home).legs[2]))
-    return along + sign * np.sqrt(square)
+    return axial + sign * np.sqrt(square)
 
 
 def _coupler_along(leg: LegPosture) -> Scalar:
@@ -99,9 +99,9 @@ def jacobian(robot: Robot, pose: ArrayLike) -> Array:
     phi, psi, _ = components(pose)
     columns = []
     for unit in np.eye(3):
-        moved = joint_driven(closed, unit, np.zeros(3))
-        rates = (-moved.W_1[1] / np.cos(phi), moved.W_1[0] / np.cos(psi), moved.d_1)
-        columns.append(stacked(rates))
+        motion = joint_driven(closed, unit, np.zeros(3))
+        rates = (-motion.W_1[1] / np.cos(phi), motion.W_1[0] / np.cos(psi), motion.d_1)
+        columns.append(stack(rates))
     return np.stack(columns, axis=-1)
 
 
@@ -117,7 +117,7 @@ def orientation(pose: ArrayLike) -> Array:
     ``theta_x = asin(sin(phi)/cos(psi))``, ``theta_y = psi``; thesis 3.16 has them exchanged.
     """
     phi, psi, d = components(pose)
-    return np.asarray(stacked((np.arcsin(np.sin(phi) / np.cos(psi)), psi, d)), dtype=np.float64)
+    return np.asarray(stack((np.arcsin(np.sin(phi) / np.cos(psi)), psi, d)), dtype=np.float64)
 
 
 def orientation_jacobian(pose: ArrayLike) -> Array:
@@ -139,8 +139,8 @@ def joint_motion(
     left, right, middle = pose_driven(closed, pose, velocity, acceleration).legs
     return JointMotion(
         joint_angles(closed),
-        stacked((left.alpha_1, right.alpha_1, middle.beta_1)),
-        stacked((left.alpha_2, right.alpha_2, middle.beta_2)),
+        stack((left.alpha_1, right.alpha_1, middle.beta_1)),
+        stack((left.alpha_2, right.alpha_2, middle.beta_2)),
     )
 
 
@@ -150,4 +150,4 @@ def coupler_margin(robot: Robot, pose: ArrayLike) -> Array:
     Where that of the middle leg vanishes, its crank has no hold on the depth: the pose is singular.
     """
     left, right, middle = (np.abs(_coupler_along(leg)) for leg in posture(robot, pose).legs)
-    return np.asarray(stacked((left, right, middle)))
+    return np.asarray(stack((left, right, middle)))

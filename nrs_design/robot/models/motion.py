@@ -44,9 +44,9 @@ def joint_driven(closed: Posture, velocity: ArrayLike, acceleration: ArrayLike) 
         leg.sin_gamma * a[i] + 2 * leg.cos_gamma * _gamma_1(leg, W_1) * v[i]
         for i, leg in enumerate((left, right))
     ]
-    turned = add(scale(pushes[0], closed.u1), scale(pushes[1], closed.u2))
+    plane_part = add(scale(pushes[0], closed.u1), scale(pushes[1], closed.u2))
     # W stays a unit vector.
-    W_2 = add(turned, scale(-dot(W_1, W_1), closed.W))
+    W_2 = add(plane_part, scale(-dot(W_1, W_1), closed.W))
     gamma_1, gamma_2 = _gamma_rates(middle, W_1, W_2)
     d_1 = (v[2] - middle.beta_gamma * gamma_1) / middle.beta_d
     bias = _closure_bias(middle, gamma_1, d_1)[0]
@@ -110,8 +110,8 @@ def _leg_motion(
 def _turn_of(leg: LegPosture, W_1: Vector, W_2: Vector, gamma_1: Scalar) -> _Turn:
     """Return how the plane turns, where the endoscope moves and no joint of the plane says it."""
     alpha_1 = dot(leg.normal, W_1) / leg.sin_gamma
-    push = dot(leg.normal, W_2) - 2 * leg.cos_gamma * gamma_1 * alpha_1
-    return alpha_1, push / leg.sin_gamma
+    tangential = dot(leg.normal, W_2) - 2 * leg.cos_gamma * gamma_1 * alpha_1
+    return alpha_1, tangential / leg.sin_gamma
 
 
 def _gamma_1(leg: LegPosture, W_1: Vector) -> Scalar:
@@ -130,9 +130,9 @@ def _closure_bias(leg: LegPosture, gamma_1: Scalar, d_1: Scalar) -> tuple[Scalar
     l1, l2 = leg.leg.l1, leg.leg.l2
     beta_1 = leg.beta_gamma * gamma_1 + leg.beta_d * d_1
     kappa_1 = leg.kappa_gamma * gamma_1 + leg.kappa_d * d_1
-    square, twice = gamma_1 * gamma_1, 2 * gamma_1 * d_1
-    x = -leg.end[0] * square - twice * leg.sin_gamma
-    y = -leg.end[1] * square + twice * leg.cos_gamma
+    square, coriolis = gamma_1 * gamma_1, 2 * gamma_1 * d_1
+    x = -leg.end[0] * square - coriolis * leg.sin_gamma
+    y = -leg.end[1] * square + coriolis * leg.cos_gamma
     beta_pull, kappa_pull = l1 * beta_1 * beta_1, l2 * kappa_1 * kappa_1
     beta_bias = leg.cos_kappa * x + leg.sin_kappa * y + beta_pull * leg.cos_elbow + kappa_pull
     kappa_bias = leg.cos_beta * x + leg.sin_beta * y + beta_pull + kappa_pull * leg.cos_elbow

@@ -98,7 +98,7 @@ class Robot:
         """Return the robot on a base that is tilted by theta4, in rad."""
         return replace(self, base_tilt=base_tilt)
 
-    def without_links(self) -> Robot:
+    def remove_links(self) -> Robot:
         """Return the robot with nothing but the mass of its platform (thesis 3.3)."""
         left, right, middle = (
             replace(leg, crank=MASSLESS, coupler=MASSLESS, arm=MASSLESS, axis_inertia=0.0)
@@ -109,7 +109,7 @@ class Robot:
     @cached_property
     def loads(self) -> tuple[tuple[Body, Body, Body], ...]:
         """Crank, coupler and arm of every leg, with the platform as part of the middle arm."""
-        carried = self.platform.placed(_ARM_FROM_PLATFORM, (self.legs[2].l3, 0.0, 0.0))
+        carried = self.platform.transform(_ARM_FROM_PLATFORM, (self.legs[2].l3, 0.0, 0.0))
         left, right, middle = ((leg.crank, leg.coupler, leg.arm) for leg in self.legs)
         return left, right, (middle[0], middle[1], middle[2].plus(carried))
 

@@ -19,11 +19,7 @@ def dot(a: Vector, b: Vector) -> Scalar:
 
 def cross(a: Vector, b: Vector) -> Vector:
     """Vector product."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def scale(factor: Scalar, a: Vector) -> Vector:
@@ -49,6 +45,6 @@ def root_mean_square(error: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)
 
 
-def stacked(vector: Vector) -> Any:
+def stack(vector: Vector) -> Any:
     """Join three components to an array of shape (..., 3)."""
     return np.stack(np.broadcast_arrays(*vector), axis=-1)

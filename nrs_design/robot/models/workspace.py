@@ -49,10 +49,10 @@ def workspace_grid(robot: Robot, angles: int = 31, depths: int = 11) -> Array:
 def reachable_poses(robot: Robot, pose: ArrayLike) -> Array:
     """Return the poses of a grid that all legs reach, shape (n, 3); none is a `PoseError`."""
     poses = np.asarray(pose, dtype=np.float64).reshape(-1, 3)
-    inside = poses[is_reachable(robot, poses)]
-    if not len(inside):
+    reachable = poses[is_reachable(robot, poses)]
+    if not len(reachable):
         raise unreachable(robot, poses)
-    return inside
+    return reachable
 
 
 def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
@@ -83,18 +83,18 @@ def survey_workspace(robot: Robot) -> WorkspaceSurvey:
     """Examine the workspace of the spec, over the reachable poses of a regular grid."""
     posture(robot, robot.home)
     poses = workspace_grid(robot, _ANGLES, _DEPTHS).reshape(-1, 3)
-    inside = is_reachable(robot, poses)
-    joints = inverse_kinematics(robot, poses[inside])
+    reachable = is_reachable(robot, poses)
+    joints = inverse_kinematics(robot, poses[reachable])
     space = robot.workspace
     corners = product((-space.phi, space.phi), (-space.psi, space.psi))
     return WorkspaceSurvey(
-        reachable=float(np.mean(inside)),
+        reachable=float(np.mean(reachable)),
         joint_low=joints.min(axis=0),
         joint_high=joints.max(axis=0),
-        reach_margin=reach_margin(robot, poses[inside]).min(axis=0),
-        coupler_margin=coupler_margin(robot, poses[inside]).min(axis=0),
+        reach_margin=reach_margin(robot, poses[reachable]).min(axis=0),
+        coupler_margin=coupler_margin(robot, poses[reachable]).min(axis=0),
         deepest=tuple((phi, psi, _deepest(robot, phi, psi)) for phi, psi in corners),
-        obstacle=None if np.all(inside) else unreachable(robot, poses[~inside]),
+        obstacle=None if np.all(reachable) else unreachable(robot, poses[~reachable]),
     )
 
 
@@ -102,8 +102,8 @@ def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
     """Largest reachable depth to a thousandth of the range, or the end of the range."""
     depths = np.linspace(*robot.workspace.d, 1001)
     poses = np.stack([np.full_like(depths, phi), np.full_like(depths, psi), depths], axis=-1)
-    inside = depths[is_reachable(robot, poses)]
-    return float(inside[-1]) if len(inside) else None
+    reachable = depths[is_reachable(robot, poses)]
+    return float(reachable[-1]) if len(reachable) else None
 
 
 def joint_peaks(robot: Robot, pose: ArrayLike) -> tuple[Array, Array]:

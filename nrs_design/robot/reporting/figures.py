@@ -45,11 +45,11 @@ def draw_workspace(robot: Robot) -> Figure:
     figure = new_figure(3.1)
     panels = figure.subplots(1, 3, sharey=True)
     for index, axes in enumerate(panels):
-        shown = np.where(margins[..., index] > 0, margins[..., index], np.nan)
+        visible = np.where(margins[..., index] > 0, margins[..., index], np.nan)
         image = axes.pcolormesh(
             np.degrees(phi),
             np.degrees(psi),
-            shown.T,
+            visible.T,
             vmin=0.0,
             vmax=float(np.nanmax(margins)),
             cmap="viridis",
@@ -99,7 +99,7 @@ def draw_torque_shares(robot: Robot, depths: Sequence[float] = (0.15, 0.2, 0.24)
 
 
 @styled
-def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
+def draw_correction(depth: TiltTable, angle_table: TiltTable) -> Figure:
     """Draw the correction coefficients against the tilt of the base (thesis fig. 3.12).
 
     Mean ratios over motions of the depth, and least squares over motions of the angles too.
@@ -119,8 +119,8 @@ def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
             label=f"{name}, depth only, mean ratio",
         )
         axes.plot(
-            np.degrees(every.tilt),
-            every.least_squares[:, joint],
+            np.degrees(angle_table.tilt),
+            angle_table.least_squares[:, joint],
             color=color(joint),
             linestyle=(0, (3, 3)),
             linewidth=1.2,
@@ -136,10 +136,10 @@ def draw_correction(depth: TiltTable, every: TiltTable) -> Figure:
 def draw_balance(gravity: Array, residual: Array) -> Figure:
     """Draw what the motors hold with and without balance: root mean square and largest torque."""
     figure, axes = new_axes(3.6)
-    where = np.arange(3)
+    positions = np.arange(3)
     for index, (name, torque) in enumerate((("without", gravity), ("with balance", residual))):
         rms = root_mean_square(torque)
-        place = where + 0.4 * index - 0.2
+        place = positions + 0.4 * index - 0.2
         bars = axes.bar(place, rms, 0.36, color=CYCLE[index], label=f"{name}, root mean square")
         axes.bar_label(bars, fmt="%.2f", label_type="center", fontsize=9, color="white")
         axes.plot(
@@ -150,7 +150,7 @@ def draw_balance(gravity: Array, residual: Array) -> Figure:
             color=(INK, MUTED)[index],
             label=f"{name}, largest",
         )
-    axes.set_xticks(where, JOINTS)
+    axes.set_xticks(positions, JOINTS)
     axes.grid(visible=False, axis="x")
     axes.set_ylabel("Static torque [N·m]")
     axes.set_ylim(0, None)

@@ -71,7 +71,7 @@ def robot_report(
 ) -> Report:
     """Return the page about a robot, with tables and figures."""
     survey, inertia = survey_workspace(robot), examine_inertia(robot)
-    obstacle, at = survey.obstacle, partial(linked, loaded)
+    obstacle, link = survey.obstacle, partial(linked, loaded)
     eigenvalues = ", ".join(map(number, inertia))
     balance = _or_why(lambda: _balance(loaded, spec, robot)) if spec.balance else ()
     balanced = [Section(_BALANCE, balance)] if balance else []
@@ -88,9 +88,9 @@ def robot_report(
         claim=claim,
         remarks=(),
         facts=(
-            ("Moving mass", at(f"{number(robot.moving_mass)} kg", "platform")),
-            ("Eigenvalues of M at home", at(f"{eigenvalues} kg·m²", "legs")),
-            ("Tilt of the base", at(f"{number(math.degrees(robot.base_tilt))} deg", "base_tilt")),
+            ("Moving mass", link(f"{number(robot.moving_mass)} kg", "platform")),
+            ("Eigenvalues of M at home", link(f"{eigenvalues} kg·m²", "legs")),
+            ("Tilt of the base", link(f"{number(math.degrees(robot.base_tilt))} deg", "base_tilt")),
             ("Package", f"nrs-design {__version__}"),
             ("SHA-256 of the spec", Linked(loaded.sha256, section=SPEC)),
         ),
@@ -114,9 +114,9 @@ def unreachable_share(survey: WorkspaceSurvey) -> str:
 
 
 def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
-    reached, text = survey.obstacle is None, "the whole declared workspace"
-    state = State.GOOD if reached else State.BAD
-    yield Light("Reach", state, text if reached else f"not {text}", _WORKSPACE)
+    is_reached, text = survey.obstacle is None, "the whole declared workspace"
+    state = State.GOOD if is_reached else State.BAD
+    yield Light("Reach", state, text if is_reached else f"not {text}", _WORKSPACE)
     nearest = float(np.min(survey.coupler_margin))
     state = State.GOOD if nearest > _NEAR_SINGULAR else State.DOUBTFUL
     text = f"couplers stay {number(nearest, 3)} from singular (|cosine|)"
@@ -129,25 +129,25 @@ def _lights(spec: RobotSpec, survey: WorkspaceSurvey) -> Iterator[Light]:
 
 def workspace_tables(loaded: LoadedSpec, survey: WorkspaceSurvey) -> tuple[Table, Table]:
     """Return the ranges of the joints, and how deep the robot reaches at the corners."""
-    turn, at = np.degrees, partial(linked, loaded)
+    turn, link = np.degrees, partial(linked, loaded)
     ranges = zip(survey.joint_low, survey.joint_high, strict=True)
     margins = zip(survey.reach_margin, survey.coupler_margin, strict=True)
     joints = tuple(
         (
             name,
-            at(f"{number(turn(low))} to {number(turn(high))}", "legs", leg),
-            at(number(1e3 * reach), "legs", leg),
-            at(number(coupler, 3), "legs", leg),
+            link(f"{number(turn(low))} to {number(turn(high))}", "legs", leg),
+            link(number(1e3 * margin), "legs", leg),
+            link(number(coupler, 3), "legs", leg),
         )
-        for leg, name, (low, high), (reach, coupler) in zip(
+        for leg, name, (low, high), (margin, coupler) in zip(
             LEGS, JOINTS, ranges, margins, strict=True
         )
     )
     corners = tuple(
         (
-            at(number(turn(phi)), "workspace", "phi"),
-            at(number(turn(psi)), "workspace", "psi"),
-            at("no depth" if d is None else number(1e3 * d), "workspace", "d"),
+            link(number(turn(phi)), "workspace", "phi"),
+            link(number(turn(psi)), "workspace", "psi"),
+            link("no depth" if d is None else number(1e3 * d), "workspace", "d"),
         )
         for phi, psi, d in survey.deepest
     )
@@ -185,8 +185,8 @@ def _dynamics(robot: Robot) -> Iterator[Block]:
 def _correction(robot: Robot) -> Iterator[Block]:
     tables = (tilt_table(robot, thesis_tilts(), sines) for sines in (DEPTH_SINES, TABLE_3_5))
     found = correction_coefficients(robot, TABLE_3_5)
-    shown = found.mean_ratio, found.least_squares, found.least_squares_error
-    rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *shown, strict=True))
+    quantities = found.mean_ratio, found.least_squares, found.least_squares_error
+    rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *quantities, strict=True))
     yield Paragraph(
         "Torque of the full model over that of the simplified one, which a controller can evaluate "
         "at every tick."
@@ -201,10 +201,10 @@ def _correction(robot: Robot) -> Iterator[Block]:
     )
 
 
-def balance_table(loaded: LoadedSpec, wanted: Balance) -> Table:
+def balance_table(loaded: LoadedSpec, design: Balance) -> Table:
     """Return the counter-masses and springs of both side legs."""
     rows = []
-    for leg, found in (("left", wanted.left), ("right", wanted.right)):
+    for leg, found in (("left", design.left_leg), ("right", design.right_leg)):
         masses = (found.arm_mass, found.coupler_mass, found.total_mass)
         values = *(1e3 * mass for mass in masses), 1e3 * found.total_distance
         numbers = (*values, 1e-3 * found.stiffness)
@@ -214,14 +214,14 @@ def balance_table(loaded: LoadedSpec, wanted: Balance) -> Table:
 
 
 def _balance(loaded: LoadedSpec, spec: RobotSpec, robot: Robot) -> Iterator[Block]:
-    wanted = design_balance(spec, robot)
-    yield balance_table(loaded, wanted)
+    design = design_balance(spec, robot)
+    yield balance_table(loaded, design)
     yield Illustration(
         "balance",
         "Static torque without and with balance",
         "Over the reachable workspace, on a base tilted by "
-        f"{number(math.degrees(wanted.tilt))} deg.",
-        draw_balance(*examine_balance(robot, wanted)),
+        f"{number(math.degrees(design.tilt))} deg.",
+        draw_balance(*examine_balance(robot, design)),
     )
 
 

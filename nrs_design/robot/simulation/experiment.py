@@ -12,7 +12,7 @@ from nrs_design.robot.models.kinematics import JointMotion, joint_motion
 from nrs_design.robot.models.robot import Robot
 from nrs_design.robot.models.vectors import Array, root_mean_square
 
-HOLD = 10.0
+HOLD_TIME = 10.0
 # Angular frequencies in rad/s: 2 pi 0.1 of 4.20 to 4.22, 4.34 and 4.35, and 0.0571 of 4.33c and
 # 4.37 to 4.39, taken literally. It makes a period of 110 s.
 FAST, SLOW = 2 * pi * 0.1, 0.0571
@@ -25,23 +25,23 @@ COORDINATE = {"phi": 0, "psi": 1, "d": 2}
 class Experiment:
     """A pose that is held, then one full period of a sine of one of its coordinates."""
 
-    moved: str  # ``d``, ``phi`` or ``psi``
+    coordinate: str  # ``d``, ``phi`` or ``psi``
     center: tuple[float, float, float]  # (phi, psi, d) in rad and m
     amplitude: float  # Amplitude of that coordinate in rad or m
     rate: float  # Angular frequency of the sine in rad/s
-    hold: float = HOLD  # Time at the center before the sine, in s
+    hold_time: float = HOLD_TIME  # Time at the center before the sine, in s
 
     @property
     def duration(self) -> float:
         """Hold and one period in s. The thesis does not say how long its records are."""
-        return self.hold + 2 * pi / self.rate
+        return self.hold_time + 2 * pi / self.rate
 
     def motion(self, time: Array) -> tuple[Array, Array, Array]:
         """Return pose, velocity and acceleration at times of shape (n,); shapes (n, 3)."""
-        phase = self.rate * np.maximum(time - self.hold, 0.0)
+        phase = self.rate * np.maximum(time - self.hold_time, 0.0)
         swing = np.zeros(3)
-        swing[COORDINATE[self.moved]] = self.amplitude
-        moving = np.where(time < self.hold, 0.0, 1.0)[:, None]
+        swing[COORDINATE[self.coordinate]] = self.amplitude
+        moving = np.where(time < self.hold_time, 0.0, 1.0)[:, None]
         sine, cosine = np.sin(phase)[:, None], np.cos(phase)[:, None]
         return (
             np.array(self.center) + sine * swing,
@@ -69,7 +69,7 @@ def thesis_experiments(
     depth = middle if balanced else low
     slow = {"balanced": MOTIONS, "independent-joint": ("d",)}.get(controller, ())
     if period is None:
-        rates = {moved: SLOW if moved in slow else FAST for moved in MOTIONS}
+        rates = {coordinate: SLOW if coordinate in slow else FAST for coordinate in MOTIONS}
     else:
         rates = dict.fromkeys(MOTIONS, 2 * pi / period)
     return (
@@ -90,9 +90,9 @@ class TrackingRecord:
     controller: str  # Which one
     experiment: Experiment  # Reference motion
     time: Array  # Ticks in s, shape (n,)
-    # wanted, measured, actual: poses (phi, psi, d), shape (n, 3), in rad and m; measured through
+    # reference, measured, actual: poses (phi, psi, d), shape (n, 3), in rad and m; measured through
     # the encoders.
-    wanted: Array
+    reference: Array
     measured: Array
     actual: Array
     command: Array  # Shape (n, 3), in rpm
@@ -103,18 +103,18 @@ class TrackingRecord:
 
         Over the whole record, with the time that the pose is held.
         """
-        return root_mean_square(self.wanted - self.measured)
+        return root_mean_square(self.reference - self.measured)
 
     @property
     def actual_rmse(self) -> Array:
         """Root mean square of wanted less actual, shape (3,), in rad and m."""
-        return root_mean_square(self.wanted - self.actual)
+        return root_mean_square(self.reference - self.actual)
 
     def summary(self) -> dict[str, Any]:
         """Return what to print: angles in deg, lengths in mm, commands in rpm, times in s."""
         return {
             "controller": self.controller,
-            "moved": self.experiment.moved,
+            "moved": self.experiment.coordinate,
             "period": 2 * pi / self.experiment.rate,
             "duration": self.experiment.duration,
             "rmse": (self.rmse * DISPLAY).tolist(),

@@ -43,8 +43,8 @@ def slide_or_stick(inertia: Array, impulse: Array, limit: Array, start: Array) -
     slack = np.eye(3) * metric[:, :, None] - inertia
     v = start
     for _ in range(LIMIT):
-        push = impulse + _times(slack, v)
-        new: Array = (push - np.minimum(np.maximum(push, -limit), limit)) / metric
+        effort = impulse + _times(slack, v)
+        new: Array = (effort - np.minimum(np.maximum(effort, -limit), limit)) / metric
         change = np.abs(new - v).max()
         v = new
         if change <= ACCURACY:
@@ -60,11 +60,11 @@ class JointState:
     velocity: Array
     friction: Array
 
-    def is_like(self, other: JointState) -> bool:
+    def is_like(self, previous: JointState) -> bool:
         """Tell whether nothing has moved between two states."""
         return bool(
-            np.array_equal(self.position, other.position)
-            and np.array_equal(self.velocity, other.velocity)
+            np.array_equal(self.position, previous.position)
+            and np.array_equal(self.velocity, previous.velocity)
         )
 
 
@@ -109,7 +109,7 @@ class Stepper:
     inverse: Array  # Its inverse, shape (n, 3, 3)
 
     @staticmethod
-    def at(drives: JointDrive, h: float, mass: Array, bias: Array) -> Stepper:
+    def create(drives: JointDrive, h: float, mass: Array, bias: Array) -> Stepper:
         """Return the stepper of h seconds for mass matrices and bias (N m) of the mechanism."""
         total = mass + np.eye(3) * drives.inertia[..., None]
         inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
@@ -118,8 +118,8 @@ class Stepper:
     def step(self, state: JointState, command: Array) -> JointState:
         """Return the state one step later, under commands of shape (n, 3), in rpm."""
         drives, h, v = self.drives, self.h, state.velocity
-        push = h * (drives.torque_per_command * command - self.bias)
-        impulse = _times(self.mass, v) - h / 2 * drives.damping * v + push
+        drive_impulse = h * (drives.torque_per_command * command - self.bias)
+        impulse = _times(self.mass, v) - h / 2 * drives.damping * v + drive_impulse
         # The friction of the last step is right while a joint keeps sliding.
         guess = np.where(v == 0.0, 0.0, _times(self.inverse, impulse - h * state.friction))
         new = slide_or_stick(self.inertia, impulse, h * drives.friction, guess)

@@ -35,7 +35,7 @@ LEFT_OUT = (
 )
 
 
-def simulate(tracks: Sequence[Track], tell: Progress = silent) -> list[TrackingRecord]:
+def simulate(tracks: Sequence[Track], report: Progress = silent) -> list[TrackingRecord]:
     """Simulate the experiment of every track; records are in their order.
 
     Experiments of the same rate run in lockstep, which does not change what they give. A motion
@@ -46,10 +46,10 @@ def simulate(tracks: Sequence[Track], tell: Progress = silent) -> list[TrackingR
         groups.setdefault(_clock(track), []).append(index)
     records: dict[int, TrackingRecord] = {}
     for (duration, rate, period), indices in sorted(groups.items()):
-        many = "experiment" if len(indices) == 1 else "experiments together"
-        tell(f"{len(indices)} {many}, {duration:.4g} s")
-        held = max(1, int(HELD_PHASE / rate * STEPS_PER_TICK / period))
-        found = _lockstep([tracks[index] for index in indices], held)
+        noun = "experiment" if len(indices) == 1 else "experiments together"
+        report(f"{len(indices)} {noun}, {duration:.4g} s")
+        hold_steps = max(1, int(HELD_PHASE / rate * STEPS_PER_TICK / period))
+        found = _lockstep([tracks[index] for index in indices], hold_steps)
         records |= zip(indices, found, strict=True)
     return [records[index] for index in range(len(tracks))]
 
@@ -70,29 +70,29 @@ def _ticks(batch: Sequence[Track]) -> Array:
     return np.asarray(period * np.arange(round(duration / period) + 1), dtype=np.float64)
 
 
-def _lockstep(batch: Sequence[Track], held: int) -> list[TrackingRecord]:
+def _lockstep(batch: Sequence[Track], hold_steps: int) -> list[TrackingRecord]:
     time, period = _ticks(batch), batch[0].law.period
-    wanted = _stacked([one.experiment.reference(one.mechanism.robot, time) for one in batch])
+    motion = _join([one.experiment.reference(one.mechanism.robot, time) for one in batch])
     drives = batch_of(one.drive for one in batch)
-    state = JointState(wanted.position[0], *np.zeros((2, len(batch), 3)))
-    benches = _shared(batch, lambda one: (one.law, one.encoder))
-    plants = _shared(batch, lambda one: (one.mechanism.robot, one.mechanism.balance))
+    state = JointState(motion.position[0], *np.zeros((2, len(batch), 3)))
+    benches = _group_rows(batch, lambda one: (one.law, one.encoder))
+    plants = _group_rows(batch, lambda one: (one.mechanism.robot, one.mechanism.balance))
     memory = [LawState() for _ in benches]
     angles, positions, commands = np.empty((3, len(time), len(batch), 3))
-    seen: JointState | None = None
+    origin: JointState | None = None
     for tick in range(len(time)):
         positions[tick] = state.position
-        reference = wanted.at(tick)
+        reference = motion.select(tick)
         try:
             for index, (track, rows) in enumerate(benches):
                 angles[tick, rows] = track.encoder.read(state.position[rows])
                 commands[tick, rows], memory[index] = track.law.step(
-                    memory[index], reference.at(rows), angles[tick, rows]
+                    memory[index], reference.select(rows), angles[tick, rows]
                 )
             for step in range(tick * STEPS_PER_TICK, (tick + 1) * STEPS_PER_TICK):
-                if seen is None or (step % held == 0 and not state.is_like(seen)):
-                    seen, h = state, period / STEPS_PER_TICK
-                    stepper = Stepper.at(drives, h, *_mass_and_bias(plants, state))
+                if origin is None or (step % hold_steps == 0 and not state.is_like(origin)):
+                    origin, h = state, period / STEPS_PER_TICK
+                    stepper = Stepper.create(drives, h, *_mass_and_bias(plants, state))
                 state = stepper.step(state, commands[tick])
         except PoseError as error:
             raise _out_of_reach(batch, time[tick]) from error
@@ -101,7 +101,7 @@ def _lockstep(batch: Sequence[Track], held: int) -> list[TrackingRecord]:
             controller=one.controller,
             experiment=one.experiment,
             time=time,
-            wanted=one.experiment.motion(time)[0],
+            reference=one.experiment.motion(time)[0],
             measured=direct_kinematics(one.mechanism.robot, angles[:, row] / one.encoder.ratio),
             actual=direct_kinematics(one.mechanism.robot, positions[:, row]),
             command=commands[:, row],
@@ -118,7 +118,7 @@ def _out_of_reach(batch: Sequence[Track], time: float) -> DesignError:
     )
 
 
-def _shared(
+def _group_rows(
     batch: Sequence[Track], part: Callable[[Track], tuple[object, ...]]
 ) -> list[tuple[Track, list[int]]]:
     """Group the rows of tracks that share a part: the first of them, and their rows."""
@@ -136,7 +136,7 @@ def _mass_and_bias(plants: list[tuple[Track, list[int]]], state: JointState) -> 
     return mass, bias
 
 
-def _stacked(references: list[JointMotion]) -> JointMotion:
+def _join(references: list[JointMotion]) -> JointMotion:
     """Join the references of all rows; shapes (ticks, n, 3)."""
     parts = ((one.position, one.velocity, one.acceleration) for one in references)
     return JointMotion(*(np.stack(arrays, axis=1) for arrays in zip(*parts, strict=True)))

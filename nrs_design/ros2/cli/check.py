@@ -76,17 +76,17 @@ def check(
     from nrs_design.ros2.check import check_file
     from nrs_design.search.certification import Limits
 
-    chosen = format_of(format_)
-    asked = ControllerContext(
+    output_format = format_of(format_)
+    context = ControllerContext(
         _ages(age),
         range_of("--stiffness", stiffness, STIFFNESS),
         range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
         read_lag(lag),
     )
     with progress("checking") as step:
-        outcome = check_file(file, asked, Limits(budget=budget), step)
-    if chosen != "text":
-        sys.stdout.write(FORMATS[chosen](outcome))
+        outcome = check_file(file, context, Limits(budget=budget), step)
+    if output_format != "text":
+        sys.stdout.write(FORMATS[output_format](outcome))
     elif wants_text():
         _show(outcome)
     raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])

@@ -59,16 +59,16 @@ def export(
         limits = search_limits(loaded.spec)
         found = list(export_controllers(designed, axis, read_lag(lag), limits))
     worst = max((item.verdict for item in found), key=SEVERITY.index)
-    written = files if worst == "proved" else []
+    outputs = files if worst == "proved" else []
     # The certificates first: there is never an export without its proofs.
-    for file, item in zip(written, found, strict=False):
+    for file, item in zip(outputs, found, strict=False):
         if item.certificate is not None:
             write_certificate(item.certificate, spec, file.with_suffix(".cert.json"))
         write_output(file, item.text, replaces=BEGINNING)
 
     def show() -> None:
-        if written:
-            places = ", ".join(map(str, written))
+        if outputs:
+            places = ", ".join(map(str, outputs))
             say(f"{name}: PROVED, exported to {places}", verdict="proved")
             return
         for item in found:
@@ -79,9 +79,9 @@ def export(
         "spec": name,
         "verdict": worst,
         "controllers": {item.controller: item.verdict for item in found},
-        "files": list(map(str, written)),
+        "files": list(map(str, outputs)),
     }
-    return Answer(lambda: facts, show, exit_codes.OF_VERDICT[worst], loud=not written)
+    return Answer(lambda: facts, show, exit_codes.OF_VERDICT[worst], loud=not outputs)
 
 
 def _check_axis(loaded: LoadedSpec, axis: str) -> None:

@@ -56,8 +56,8 @@ def _summary(table: tuple[ReproducedValue, ...]) -> dict[str, Any]:
         "summary": counts_line(table),
         "counts": count_verdicts(table),
         "errors_of_the_print": [
-            asdict(error) | {"rows": [row.name for row in touched]}
-            for error, touched in printed_errors(table)
+            asdict(error) | {"rows": [row.name for row in error_rows]}
+            for error, error_rows in printed_errors(table)
         ],
         "drift": [row.name for row in drifted(table)],
         "rows": [asdict(row) for row in table],
@@ -88,8 +88,8 @@ def _print(table: tuple[ReproducedValue, ...]) -> None:
             say(f"{row.section} {row.name}: {fitted}{row.note}")
     say()
     errors = [
-        [error.id, error.where, error.about, str(len(touched))]
-        for error, touched in printed_errors(table)
+        [error.id, error.where, error.about, str(len(error_rows))]
+        for error, error_rows in printed_errors(table)
     ]
     if errors:
         print_table("Errors of the print", ["error", "where", "what", "rows"], errors)

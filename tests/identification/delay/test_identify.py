@@ -18,11 +18,11 @@ LATE = motors.DELAY * signals.RATE
 @pytest.mark.slow
 def test_a_copy():
     found = identify_delay(signals.copy(1))
-    assert found.chosen.follower.name == "a copy"
+    assert found.fit.follower.name == "a copy"
     assert found.samples.covers(signals.DELAY)
     assert found.samples.high - found.samples.low < 0.5
     assert found.delay.value == pytest.approx(found.samples.value / signals.RATE)
-    assert found.chosen.gain == pytest.approx(0.9, abs=0.01)
+    assert found.fit.gain == pytest.approx(0.9, abs=0.01)
     low, high = found.whole_samples
     assert low <= 2 < 3 <= high
     assert found.doubts == ()
@@ -48,7 +48,7 @@ def test_a_whole_number_of_samples_without_noise():
 )
 def test_dynamics_are_no_delay(options, name):
     found = identify_delay(signals.lag(1, **options))
-    assert found.chosen.follower.name == name
+    assert found.fit.follower.name == name
     assert found.samples.value == pytest.approx(LATE, abs=0.15)
     if "integrator" not in name:
         # Both columns are most alike much later than the dead time.
@@ -61,7 +61,7 @@ def test_of_models_that_are_nearly_as_good_the_simplest_is_chosen():
     found = identify_delay(signals.lag(92))
     least = min(found.fits, key=lambda fit: fit.bic)
     assert least.follower.name == "a second-order lag"
-    assert found.chosen.follower.name == "a first-order lag"
+    assert found.fit.follower.name == "a first-order lag"
     assert found.samples.covers(LATE)
 
 

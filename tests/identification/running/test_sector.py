@@ -60,7 +60,7 @@ def test_a_stiffness_inside_is_never_told(tmp_path, kind, surface):
     stiffness = check(found, "stiffness")
     assert (str(stiffness.status), stiffness.time) == ("undecided", None)
     assert stiffness.measured.startswith("the range explains every row; 1.5 times the range would")
-    assert found.judged > 0.3
+    assert found.judged_share > 0.3
     assert found.verdict == "inconclusive"
 
 
@@ -141,7 +141,7 @@ def test_without_bounds_or_columns_the_stiffness_is_not_judged(tmp_path):
     assert "no `monitoring`" in unknown.sector
     found = judged(tmp_path, runs.run(), unknown)
     assert str(check(found, "stiffness").status) == "not judged"
-    assert found.judged is None
+    assert found.judged_share is None
     record = log(tmp_path, runs.run())
     columns = {key: values for key, values in record.columns.items() if key != "torque"}
     (unseen,), share = judge_sector(replace(record, columns=columns), bounds())

@@ -83,7 +83,7 @@ def test_samples_whose_noise_decides_where_a_touch_ends_are_left_out():
 def test_a_tissue_that_relaxes_is_lost_early_and_met_late():
     found = find_contact(robot_record(synthetic.CONCHA, slow(2), 0.005, 2))
     for touch in found.touches:
-        assert touch.first <= touch.met < touch.lost <= touch.end
+        assert touch.first <= touch.force_begin < touch.force_end <= touch.end
     second = found.touches[1]
-    assert second.met > second.first
-    assert second.lost < second.end
+    assert second.force_begin > second.first
+    assert second.force_end < second.end

@@ -26,7 +26,7 @@ TRUTHS = [
 @pytest.mark.parametrize(("law", "motion", "noise", "q"), TRUTHS)
 def test_the_true_law_is_chosen(law, motion, noise, q):
     found = identify_tissue([record(law, motion(s), noise, s, q) for s in range(3)])
-    assert found.chosen.law.name == law.name
+    assert found.model.law.name == law.name
     assert "least BIC" in found.reason
     assert [model.law.name for model in found.models] == list(LAWS)
     assert all(source.synthetic for source in found.sources)
@@ -38,16 +38,16 @@ def test_a_clean_ramp_tells_its_law(step):
     time = np.arange(1500) / 100
     motion = Motion(time, 0.005 * np.interp(time % 5, [0, 0.5, 1.5, 2.5, 3.5], [0, 0, 1, 1, 0]))
     found = identify_tissue([record(KelvinVoigt(400.0, 30.0), motion, 0.02, 1, step)])
-    assert found.chosen.law.name == "kelvin-voigt"
+    assert found.model.law.name == "kelvin-voigt"
     assert found.caveats == ()
-    assert all(holds(found.chosen.ranges, (400.0, 30.0)))
+    assert all(holds(found.model.ranges, (400.0, 30.0)))
 
 
 def test_a_law_can_be_asked_for():
     steps = []
     data = [record(synthetic.NOSE, slow(), 0.01)]
     found = identify_tissue(data, "elastic", progress=steps.append)
-    assert found.chosen.law.name == "elastic"
+    assert found.model.law.name == "elastic"
     assert "prefers kelvin-boltzmann" in found.reason
     assert steps == list(LAWS)
     assert "and no other specimen" in found.covers
@@ -58,7 +58,7 @@ def test_a_law_can_be_asked_for():
 
 def test_a_doubtful_law_is_not_chosen():
     found = identify_tissue([record(Maxwell(1.129, 5000.0), slow(), 0.01)])
-    assert found.chosen.law.name == "elastic"
+    assert found.model.law.name == "elastic"
     assert "would have less, but with doubts" in found.reason
     assert found.caveats[0].startswith("maxwell describes the records better")
 

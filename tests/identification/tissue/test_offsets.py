@@ -27,14 +27,14 @@ def shifted(zero=0.0, tare=0.0, sign=1):
 
 def chosen(data, **options):
     found = identify_tissue([data], preparation=Preparation(**options))
-    (fit,) = found.chosen.fits
+    (fit,) = found.model.fits
     return found, fit, fit.offsets
 
 
 @pytest.mark.parametrize(("zero", "tare"), [(0.0, 0.0), (0.1, 0.0), (0.0, -1.3), (-2.0, 4.0)])
 def test_offsets_do_not_touch_the_stiffness(zero, tare):
     found, fit, offsets = chosen(shifted(zero, tare))
-    assert found.chosen.law.name == "kelvin-voigt"
+    assert found.model.law.name == "kelvin-voigt"
     assert holds(fit.estimates, VOIGT.values) == [True, True]
     assert found.caveats == ()
     # Without air, the record tells the position of contact only if the tare is known.

@@ -70,10 +70,10 @@ def test_a_touch_that_only_grazes_the_tissue():
     depth = np.choose((time // 4).astype(int), [1.0, 0.8, 0.296, 0.9])
     motion = Motion(time, 0.01 * depth * np.sin(np.pi * time / 4) ** 2)
     trial = prepare(robot_record(KelvinVoigt(300.0, 3.0), motion, 0.002, 1))
-    assert len(trial.unrested) < len(replace(trial, used=np.ones_like(trial.used)).unrested)
+    assert len(trial.unrested) < len(replace(trial, fit_mask=np.ones_like(trial.fit_mask)).unrested)
     fit = fit_record(KelvinBoltzmann, trial)
     assert fit.fitted.shape == trial.force.shape
-    error = (trial.force - fit.fitted)[trial.used]
+    error = (trial.force - fit.fitted)[trial.fit_mask]
     assert float(np.sqrt(np.mean(error**2))) == pytest.approx(fit.rmse)
 
 

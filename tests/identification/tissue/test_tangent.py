@@ -83,4 +83,4 @@ def test_a_linear_law_has_none():
 @pytest.mark.parametrize("preload", [(0.0, 0.001), (0.001, 0.02)])
 def test_beyond_the_record(preload):
     with pytest.raises(DataError, match="are not within the deflections"):
-        check_preload(HuntCrossley, [fit.trial for fit in identified(1).chosen.fits], preload)
+        check_preload(HuntCrossley, [fit.trial for fit in identified(1).model.fits], preload)

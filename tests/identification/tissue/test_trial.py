@@ -40,8 +40,8 @@ def test_a_short_contact_in_a_long_record_is_left_when_it_is_thinned():
     """Of a million rows one in 500 was kept, and none of a contact of 300."""
     trial = prepare(DATA)
     rows = np.arange(len(trial.force))
-    short = replace(trial, used=(rows > 100) & (rows < 400))
-    assert sum(short.thinned(2).used) >= 200
+    short = replace(trial, fit_mask=(rows > 100) & (rows < 400))
+    assert sum(short.thinned(2).fit_mask) >= 200
     assert len(trial.thinned(1000).force) <= 1000 < len(trial.force)
 
 
@@ -60,7 +60,7 @@ def test_the_first_cycle_is_doubted_and_set_apart():
     assert "--set start=5.39 sets it apart" in said
     preparation = Preparation(start=5.0)
     found = identify_tissue([conditioned()], "kelvin-voigt", preparation)
-    (fit,) = found.chosen.fits
+    (fit,) = found.model.fits
     assert fit.estimates[0].covers(750.0)
     assert found.caveats == ()
     assert "outside start and end" in "; ".join(fit.trial.remarks)
@@ -77,8 +77,8 @@ def test_a_record_whose_begin_a_pause_cut_off_need_not_begin_at_rest():
         pauses="1 pause in the record: its longest stretch is used",
     )
     found = identify_tissue([rest])
-    assert found.chosen.law.name == law.name
+    assert found.model.law.name == law.name
     assert found.caveats == ()
-    assert all(holds(found.chosen.ranges, law.values))
+    assert all(holds(found.model.ranges, law.values))
     assert found.remarks == ("record-3: 1 pause in the record: its longest stretch is used",)
-    assert found.chosen.fits[0].trial.unrested
+    assert found.model.fits[0].trial.unrested

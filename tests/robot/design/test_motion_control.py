@@ -113,7 +113,7 @@ def test_one_tick_of_many_robots_is_that_of_each(spec, load, angle):
     wanted = JointMotion((both + ahead) / 5, np.zeros((2, 3)), np.zeros((2, 3)))
     together, _ = law.step(LawState(), wanted, both)
     for row in (0, 1):
-        alone, _ = law.step(LawState(), wanted.at([row]), both[[row]])
+        alone, _ = law.step(LawState(), wanted.select([row]), both[[row]])
         assert together[[row]] == pytest.approx(alone, rel=1e-12)
 
 

@@ -56,7 +56,7 @@ def test_spring_torque_is_the_slope_of_its_energy(robot, balance):
 
     def energy(x):
         closed, total = posture(robot, x), 0.0
-        for leg, spring in zip(closed.legs, (balance.left, balance.right), strict=False):
+        for leg, spring in zip(closed.legs, (balance.left_leg, balance.right_leg), strict=False):
             a = np.array(leg.leg.axis)
             b = np.cross(leg.normal, a)
             crank = spring.spring_on_crank * (leg.cos_beta * a + leg.sin_beta * b)

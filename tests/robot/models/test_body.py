@@ -31,7 +31,7 @@ def test_two_point_masses_are_a_dumbbell(first, second, shift):
     reduced = 0.75 * (apart @ apart * np.eye(3) - np.outer(apart, apart))
     assert both.inertia == pytest.approx(reduced, abs=1e-12)
     quarter = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
-    moved = both.placed(quarter, shift)
+    moved = both.transform(quarter, shift)
     assert moved.center_of_mass == pytest.approx(quarter @ both.center_of_mass + shift, abs=1e-12)
     assert moved.inertia == pytest.approx(quarter @ both.inertia @ quarter.T, abs=1e-12)
 

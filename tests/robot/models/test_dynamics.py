@@ -113,7 +113,7 @@ def test_weightless_and_slow_all_is_inertia(robot):
 
 
 def only_platform(robot):
-    left, right, middle = robot.without_links().legs
+    left, right, middle = robot.remove_links().legs
     rotor = replace(middle, axis_inertia=robot.legs[2].axis_inertia)
     return replace(robot, legs=(left, right, rotor))
 
@@ -151,19 +151,19 @@ def test_eigenvalues_of_the_robot(robot):
 
 
 def test_the_platform_alone_is_enough(robot):
-    assert (examine_inertia(robot.without_links()) > 0).all()
+    assert (examine_inertia(robot.remove_links()) > 0).all()
 
 
 def test_nothing_with_mass(robot):
     with pytest.raises(DesignError, match="is singular"):
-        examine_inertia(replace(robot.without_links(), platform=MASSLESS))
+        examine_inertia(replace(robot.remove_links(), platform=MASSLESS))
 
 
 def test_a_mass_that_one_motion_leaves_at_rest(robot):
     # In the pivot: turning the endoscope about it moves nothing.
     at_pivot = point_mass(1.0, (0.0, 0.0, -float(robot.home[2])))
     with pytest.raises(DesignError, match="moves no mass"):
-        examine_inertia(replace(robot.without_links(), platform=at_pivot))
+        examine_inertia(replace(robot.remove_links(), platform=at_pivot))
 
 
 def test_a_workspace_out_of_reach(robot):

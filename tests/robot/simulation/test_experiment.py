@@ -26,7 +26,7 @@ SLOW = np.sin(0.0571 * 20)
 def test_motions_of_the_thesis(tilted, controllers, moved, times, values, duration):
     """4.20 to 4.22, 4.33 to 4.35, and 4.37 to 4.39; angles in deg."""
     for controller in controllers:
-        (one,) = (e for e in thesis_experiments(tilted, controller) if e.moved == moved)
+        (one,) = (e for e in thesis_experiments(tilted, controller) if e.coordinate == moved)
         depth = 0.2 if moved == "d" or controller == "balanced" else 0.15
         swing = np.zeros((len(times), 3))
         swing[:, COORDINATE[moved]] = values if moved == "d" else np.radians(values)

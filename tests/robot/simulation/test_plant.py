@@ -49,7 +49,7 @@ def test_step_response_of_the_linear_loop(spec, smooth):
     memory = law.step(LawState(), held, np.zeros((1, 3)))[1]
     state = JointState(*np.zeros((3, 1, 3)))
     reference = JointMotion(np.ones((1, 3)), *np.zeros((2, 1, 3)))
-    stepper = Stepper.at(
+    stepper = Stepper.create(
         batch_of([smooth]), period, *Weightless().mass_and_bias(state.position, None)
     )
     trace = []
@@ -88,7 +88,7 @@ def test_the_weight_deflects_the_joints_unless_it_is_fed_forward(spec, tilted, s
     for _ in range(500):
         command, memory = law.step(memory, reference, law.encoder_ratio * state.position)
         matrices = mechanism.mass_and_bias(state.position, state.velocity)
-        state = Stepper.at(batch_of([smooth]), law.period, *matrices).step(state, command)
+        state = Stepper.create(batch_of([smooth]), law.period, *matrices).step(state, command)
     weight = gravity_torque(tilted, direct_kinematics(tilted, state.position))
     per_rad = smooth.torque_per_command * float(law.motion.Kp) * smooth.encoder_ratio
     left = 0 * weight if fed else weight / per_rad
@@ -103,7 +103,7 @@ def test_friction_holds_what_is_within_its_limit(tilted, drive):
     missing = np.array([[0.99], [1.01]]) * drive.friction
     command = (weight - missing) / drive.torque_per_command
     state = at_rest(tilted, poses)
-    stepper = Stepper.at(
+    stepper = Stepper.create(
         batch_of([drive, drive]),
         1e-3,
         *Mechanism(tilted).mass_and_bias(state.position, state.velocity),
@@ -120,7 +120,7 @@ def test_a_joint_that_stops_stays_without_chatter(drive):
     stop = drive.inertia / drive.damping * np.log1p(0.1 * drive.damping / drive.friction)
     state = JointState(np.zeros((1, 3)), np.full((1, 3), 0.1), np.zeros((1, 3)))
     h = 1e-3
-    stepper = Stepper.at(batch_of([drive]), h, np.zeros((1, 3, 3)), np.zeros((1, 3)))
+    stepper = Stepper.create(batch_of([drive]), h, np.zeros((1, 3, 3)), np.zeros((1, 3)))
     speeds = []
     for _ in range(200):
         state = stepper.step(state, np.zeros((1, 3)))
@@ -157,7 +157,7 @@ def test_agrees_with_an_independent_integrator(tilted, smooth):
         state = start
         for _ in range(round(0.1 / h)):
             matrices = mechanism.mass_and_bias(state.position, state.velocity)
-            state = Stepper.at(batch_of([smooth]), h, *matrices).step(state, command)
+            state = Stepper.create(batch_of([smooth]), h, *matrices).step(state, command)
         errors.append(np.abs(state.position[0] - exact).max())
     assert errors[0] < 1e-3 * moved
     assert errors[1] < 0.6 * errors[0]
@@ -168,7 +168,7 @@ def test_energy_is_exact_while_the_matrices_hold(drive):
     mass = np.array([[[0.2, 0.05, 0.01], [0.05, 0.15, 0.02], [0.01, 0.02, 0.1]]])
     bias = np.array([[1.0, -0.5, 0.3]])
     state = JointState(np.zeros((1, 3)), np.array([[0.1, -0.2, 0.05]]), np.zeros((1, 3)))
-    after = Stepper.at(drives, h, mass, bias).step(state, np.array([[900.0, 100.0, -800.0]]))
+    after = Stepper.create(drives, h, mass, bias).step(state, np.array([[900.0, 100.0, -800.0]]))
     inertia = mass[0] + drive.inertia * np.eye(3)
     kinetic = [s.velocity[0] @ inertia @ s.velocity[0] / 2 for s in (state, after)]
     mean = (state.velocity + after.velocity)[0] / 2
@@ -187,11 +187,11 @@ def test_balanced_mechanism_has_counter_masses_and_springs(spec, tilted):
 
 
 def test_massless_robot_is_the_motor(tilted, drive):
-    bare = replace(tilted.without_links(), platform=MASSLESS)
+    bare = replace(tilted.remove_links(), platform=MASSLESS)
     mass, bias = Mechanism(bare).mass_and_bias(inverse_kinematics(bare, HOME), np.ones((1, 3)))
     assert not np.any(mass)
     assert not np.any(bias)
-    stepper = Stepper.at(batch_of([drive]), 1e-3, mass, bias)
+    stepper = Stepper.create(batch_of([drive]), 1e-3, mass, bias)
     assert stepper.mass[0] == pytest.approx(905**2 * 14.81e-7 * np.eye(3), rel=1e-12)
 
 

@@ -18,7 +18,7 @@ PERIOD, HOLD = 2.0, 0.5
 def tracks(spec, tilted):
     """Each controller moves d, phi and psi in turn."""
     return [
-        replace(one, experiment=replace(one.experiment, hold=HOLD))
+        replace(one, experiment=replace(one.experiment, hold_time=HOLD))
         for name in CONTROLLERS
         for one in build_tracks(spec, tilted, name, PERIOD)
     ]
@@ -31,11 +31,11 @@ def records(tracks):
 
 @pytest.mark.slow
 def test_one_record_for_each_experiment(records):
-    found = [(record.controller, record.experiment.moved) for record in records]
+    found = [(record.controller, record.experiment.coordinate) for record in records]
     assert found == [(name, moved) for name in CONTROLLERS for moved in ("d", "phi", "psi")]
     for record in records:
         assert record.time[[0, -1]] == pytest.approx([0, 2.5])
-        assert record.wanted.shape == record.measured.shape == record.command.shape == (1251, 3)
+        assert record.reference.shape == record.measured.shape == record.command.shape == (1251, 3)
 
 
 @pytest.mark.slow
@@ -92,7 +92,7 @@ def test_an_unstable_loop_is_said_to_be_one(tracks):
         law=replace(track.law, motion=ProportionalDerivative(Fraction(10**7), Fraction(10**6))),
     )
     with pytest.raises(DesignError, match=r"independent-joint.*leaves what the robot can reach"):
-        simulate([wild], tell=(told := []).append)
+        simulate([wild], report=(told := []).append)
     assert told == ["1 experiment, 2.5 s"]
 
 
@@ -111,7 +111,7 @@ def test_the_page_states_what_is_simulated(spec, tilted):
     moves, measured = ("d", "phi", "psi"), ("phi", "psi", "d")
     stated = {row[0]: dict(zip(moves, map(float, row[1:4]), strict=True)) for row in rows}
     for record in found:
-        moved = record.experiment.moved
+        moved = record.experiment.coordinate
         error = record.summary()["rmse"][measured.index(moved)]
         expected = stated[record.controller].pop(moved)
         assert error == pytest.approx(expected, rel=1e-2, abs=2e-4)

@@ -50,7 +50,7 @@ ERROR = np.array([[0.01, 0.0, 1e-3], [-0.01, 0.02, -1e-3]])
 
 @pytest.fixture
 def record():
-    experiment = Experiment("psi", (0.0, 0.0, 0.2), 0.1, np.pi, hold=1.0)
+    experiment = Experiment("psi", (0.0, 0.0, 0.2), 0.1, np.pi, hold_time=1.0)
     wanted = np.ones((2, 3))
     command = np.array([[1.0, -5.0, 2.0], [3.0, 4.0, 0.0]])
     return TrackingRecord(

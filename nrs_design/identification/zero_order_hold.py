@@ -28,14 +28,14 @@ class HeldCommand:
     samples: Rows  # Shape (n,). Where the samples are in the grid.
 
     @classmethod
-    def of(cls, time: Array, command: Array, delay: float) -> Self:
+    def build(cls, time: Array, command: Array, delay: float) -> Self:
         """Hold every command from its sample to the next, and let it act a delay in s later.
 
         The first one was there before; the last one acts at no sample.
         """
         acts = time + delay
-        inside = acts[(acts > time[0]) & (acts < time[-1])]
-        grid = np.union1d(time, inside)
+        inner_times = acts[(acts > time[0]) & (acts < time[-1])]
+        grid = np.union1d(time, inner_times)
         index = np.searchsorted(acts, grid[:-1], side="right") - 1
         return cls(grid, command[np.maximum(index, 0)], np.searchsorted(grid, time))
 
@@ -68,14 +68,14 @@ class Lags:
             (complex(-1 / p), complex(-1 / q)), (complex(-q / (p - q)), complex(p / (p - q)))
         )
 
-    def velocity(self, held: HeldCommand, inputs: Array) -> Array:
+    def velocity(self, zoh: HeldCommand, inputs: Array) -> Array:
         """Return the output of the model from rest, shape (m,), to m - 1 held inputs."""
-        parts = (s * _lag(t, held.steps, inputs) for t, s in self._pairs())
+        parts = (s * _lag(t, zoh.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
-    def angle(self, held: HeldCommand, inputs: Array) -> Array:
+    def angle(self, zoh: HeldCommand, inputs: Array) -> Array:
         """Return the integral of the output, from zero; parameters as for `velocity`."""
-        parts = (s * _traveled(t, held.steps, inputs) for t, s in self._pairs())
+        parts = (s * _traveled(t, zoh.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
     def free(self, time: Array, *, angle: bool) -> Array:
@@ -84,8 +84,8 @@ class Lags:
         An angle is the integral of the model's output, and may begin anywhere.
         """
         ends = [np.exp(-(time - time[0]) / t) for t, _ in self._pairs()]
-        kept = [part for end in ends for part in (end.real, end.imag) if part.any()]
-        return np.column_stack([np.ones_like(time), *kept] if angle else kept)
+        decays = [part for end in ends for part in (end.real, end.imag) if part.any()]
+        return np.column_stack([np.ones_like(time), *decays] if angle else decays)
 
     def _pairs(self) -> Iterator[tuple[complex, complex]]:
         """Yield time constants and shares; for a conjugate pair, one with twice its share.

@@ -36,31 +36,31 @@ class _Stay:
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> AuditCheck:
     """Judge times in each mode, and the order of modes."""
-    allowed, basis = _rules_text(bounds), f"switching rules of {bounds.source}"
+    limit_text, basis = _rules_text(bounds), f"switching rules of {bounds.source}"
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"
         return AuditCheck(_NAME, "not judged", reason, "", basis)
     if (modes := log.modes) is None:
-        if not allowed:
+        if not limit_text:
             return AuditCheck(_NAME, "inside", "any switching is allowed", "arbitrary", basis)
-        return AuditCheck(_NAME, "not judged", "no column for mode", allowed, basis)
-    stays = list(_stays(log, modes))
-    unknown = [stay.mode for stay in stays if stay.mode not in bounds.dwell_times]
+        return AuditCheck(_NAME, "not judged", "no column for mode", limit_text, basis)
+    dwells = list(_stays(log, modes))
+    unknown = [stay.mode for stay in dwells if stay.mode not in bounds.dwell_times]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
-        return AuditCheck(_NAME, "not judged", reason, allowed, basis)
-    measured = counted(len(stays) - 1, "switch")
-    if not allowed:
+        return AuditCheck(_NAME, "not judged", reason, limit_text, basis)
+    measured = counted(len(dwells) - 1, "switch")
+    if not limit_text:
         return AuditCheck(_NAME, "inside", measured, "arbitrary", basis)
     step = float(np.diff(log.time).max())
     # With a row for every sample of the loop, no stay is shorter.
     if bounds.period is None or step > _LONGEST_STEP * bounds.period:
         measured += f"; a stay between two rows (up to {step:.3g} s) is not seen"
-    if (first := next(_violations(stays, bounds), None)) is not None:
-        return AuditCheck(_NAME, "outside", measured, allowed, basis, *first)
-    if (doubt := next(_doubts(stays, bounds), None)) is not None:
-        return AuditCheck(_NAME, "undecided", f"{measured}; {doubt}", allowed, basis)
-    return AuditCheck(_NAME, "inside", measured, allowed, basis)
+    if (first := next(_violations(dwells, bounds), None)) is not None:
+        return AuditCheck(_NAME, "outside", measured, limit_text, basis, *first)
+    if (doubt := next(_doubts(dwells, bounds), None)) is not None:
+        return AuditCheck(_NAME, "undecided", f"{measured}; {doubt}", limit_text, basis)
+    return AuditCheck(_NAME, "inside", measured, limit_text, basis)
 
 
 def _rules_text(bounds: RunBounds) -> str:
@@ -93,13 +93,13 @@ def _stays(log: RunLog, modes: Rows) -> Iterator[_Stay]:
         )
 
 
-def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[tuple[float, str]]:
+def _violations(dwells: list[_Stay], bounds: RunBounds) -> Iterator[tuple[float, str]]:
     """Yield time in s and text of each violation that is certain."""
     before = ""
-    for stay in stays:
+    for stay in dwells:
         shortest, longest = bounds.dwell_times[stay.mode]
-        allowed = bounds.transitions
-        ordered = allowed is None or not before or (before, stay.mode) in allowed
+        transitions = bounds.transitions
+        ordered = transitions is None or not before or (before, stay.mode) in transitions
         if not ordered and not stay.gap:
             yield stay.begin, f"{before} was followed by {stay.mode}"
         if stay.longest < shortest:
@@ -111,9 +111,9 @@ def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[tuple[float, 
         before = stay.mode
 
 
-def _doubts(stays: list[_Stay], bounds: RunBounds) -> Iterator[str]:
+def _doubts(dwells: list[_Stay], bounds: RunBounds) -> Iterator[str]:
     """Yield what some reading of the log does not allow."""
-    for place, stay in enumerate(stays):
+    for place, stay in enumerate(dwells):
         shortest, longest = bounds.dwell_times[stay.mode]
         if stay.gap:
             yield f"rows are missing about {stay.begin:.6g} s, where switches may have been"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete, lfilter
 
-from nrs_design.identification.held import HeldCommand, Lags
+from nrs_design.identification.zero_order_hold import HeldCommand, Lags
 
 TIME = np.cumsum(np.random.default_rng(0).uniform(0.001, 0.004, 300)) - 0.001
 COMMAND = np.repeat(np.random.default_rng(1).normal(size=20), 15)
@@ -27,7 +27,7 @@ def late(delay):
     ],
 )
 def test_against_fine_steps(lags, system, delay):
-    held = HeldCommand.of(TIME, COMMAND, delay)
+    held = HeldCommand.build(TIME, COMMAND, delay)
     (numerator,), denominator, _ = cont2discrete(system, FINE[1] - FINE[0])
     output = lfilter(numerator, denominator, late(delay))
     wanted = np.interp(TIME, FINE, output)

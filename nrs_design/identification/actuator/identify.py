@@ -18,8 +18,8 @@ from nrs_design.identification.actuator.fit import (
 from nrs_design.identification.datasets.records import (
     AbstractIdentification,
     SignalRecord,
-    doubt_sizes,
     doubt_step,
+    question_sizes,
 )
 from nrs_design.identification.errors import DataError
 from nrs_design.identification.statistics import WHITE, Estimate, span
@@ -52,7 +52,7 @@ class ActuatorIdentification(AbstractIdentification[SignalRecord]):
             ("gain", "the gain", fit.gain.value, f"rad/s/{self.unit}"),
             ("time_constant", "the time constant", fit.time_constant.value, "s"),
         )
-        return (*doubt_step(self.step), *doubt_sizes(sizes), *find_doubts(self.records, fit))
+        return (*doubt_step(self.step), *question_sizes(sizes), *find_doubts(self.records, fit))
 
     @property
     def unit(self) -> str:

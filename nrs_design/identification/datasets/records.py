@@ -165,7 +165,7 @@ def _uninterrupted(table: MeasurementTable) -> tuple[MeasurementTable, str]:
     return replace(table, values=values, first_line=table.first_line + rows.start), pauses
 
 
-def doubt_sizes(sizes: Iterable[tuple[str, str, float, str]]) -> Iterator[str]:
+def question_sizes(sizes: Iterable[tuple[str, str, float, str]]) -> Iterator[str]:
     """Doubt implausible values; each has a key of the table, a name, a value and its unit."""
     for key, name, value, unit in sizes:
         if question := doubt_size(key, value, unit, f"{value:.3g}"):

@@ -15,8 +15,8 @@ from nrs_design.identification.datasets.records import (
     FEWEST_ROWS,
     AbstractIdentification,
     SignalRecord,
-    doubt_sizes,
     doubt_step,
+    question_sizes,
 )
 from nrs_design.identification.delay.fit import (
     EXACT,
@@ -472,7 +472,7 @@ def _doubts(result: DelayIdentification) -> Iterator[str]:
     record, fit, untold = result.record, result.fit, result.untold
     command, output = record.names
     yield from doubt_step(record.step)
-    yield from doubt_sizes([("delay", "the delay", result.delay.value, "s")])
+    yield from question_sizes([("delay", "the delay", result.delay.value, "s")])
     early, error = -fit.samples, (result.interval.high - result.interval.low) / 2
     if untold is not None:
         yield f"the delay is {untold}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.identification.datasets.records import doubt_sizes, doubt_step
+from nrs_design.identification.datasets.records import doubt_step, question_sizes
 from nrs_design.identification.numeric import Array, column_sizes
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import WHITE, Uncertainty, ljung_box, student_quantile
@@ -71,7 +71,7 @@ def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:
     if not isinstance(law, AbstractLinearLaw):
         return
     units = law.units(rotational=rotational)
-    yield from doubt_sizes(zip(law.keys, law.parameters(), law.values, units, strict=True))
+    yield from question_sizes(zip(law.keys, law.parameters(), law.values, units, strict=True))
 
 
 def _units(trial: Trial) -> Iterator[str]:

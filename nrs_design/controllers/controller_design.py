@@ -73,14 +73,14 @@ class ControllerDesign:
         )
         return replace(self, motion=motion, controllers=tuple(controllers))
 
-    def leading_laws(self, *, mixed: bool) -> list[CompliantLaw]:
+    def leading_laws(self, *, is_mixture: bool) -> list[CompliantLaw]:
         """Return the laws whose states the modes share.
 
         In a mixture these are the laws that command a velocity, or else those whose integral
         bleeds; the others have no states of their own.
         """
         laws = [controller.law for controller in self.controllers]
-        if not mixed:
+        if not is_mixture:
             return laws
         moving = [law for law in laws if law.commands == "velocity"]
         return moving or [law for law in laws if law.bleeds]
@@ -91,13 +91,13 @@ class ControllerDesign:
         `mixed`: the states of some controllers are idle while others are active.
         """
         laws = [controller.law for controller in self.controllers]
-        kinds = {(law.commands, law.states) for law in self.leading_laws(mixed=mixed)}
+        kinds = {(law.commands, law.states) for law in self.leading_laws(is_mixture=mixed)}
         if mixed:
             kinds |= {(law.commands, law.states) for law in laws if law.states and not law.bleeds}
         if len(kinds) <= 1:
             return None
-        kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
-        found = "; ".join(dict.fromkeys(kept))
+        descriptions = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
+        found = "; ".join(dict.fromkeys(descriptions))
         return f"the controllers keep different states of their own ({found})"
 
     @property
@@ -117,6 +117,6 @@ def units_of(
     units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
     motion, pd = ProportionalDerivative.units_in(command), ProportionalDerivative.name
     return {
-        name: {gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in own}
-        for name, own in gains.items()
+        name: {gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in gain_names}
+        for name, gain_names in gains.items()
     }

@@ -27,13 +27,13 @@ def _rounded(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
     if abs(value) < Fraction(2) ** exponent:
         exponent -= 1
     step = Fraction(2) ** max(exponent + 1 - PRECISION, SMALLEST)
-    rounded = whole(value / step) * step
-    if abs(rounded) >= 1 << LIMIT:
+    result = whole(value / step) * step
+    if abs(result) >= 1 << LIMIT:
         raise DesignError(
             "a gain is beyond the range of single precision, 3.4e38",
             remedy="choose smaller gains, or other units",
         )
-    return rounded
+    return result
 
 
 def float32_not_above(value: Fraction) -> Fraction:

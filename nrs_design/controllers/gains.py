@@ -66,7 +66,7 @@ def design_from_gains(
 def free_gains(spec: InteractionDesignSpec) -> Iterator[tuple[str, str]]:
     """Yield controller and name of every gain that the spec leaves to choose."""
     for name, controller in spec.controllers.items():
-        yield from ((name, gain) for gain, own in controller.gains().items() if not own.fixed)
+        yield from ((name, gain) for gain, bounds in controller.gains().items() if not bounds.fixed)
     for name, free in spec.design.free.items():
         yield from ((name, gain) for gain, _ in free.given())
 
@@ -99,10 +99,10 @@ def with_chosen(
 
 
 def _check_near(
-    name: str, gain: str, given: Fraction, factors: FactorBounds, found: Fraction
+    name: str, gain: str, nominal: Fraction, factors: FactorBounds, value: Fraction
 ) -> None:
-    low, high = (to_float32(factor * given) for factor in (factors.min, factors.max))
-    if not low <= found <= high:
+    low, high = (to_float32(factor * nominal) for factor in (factors.min, factors.max))
+    if not low <= value <= high:
         raise CertificateError(f"gain {gain} of {name} is outside its bounds")
 
 
@@ -138,9 +138,9 @@ def _given(spec: InteractionDesignSpec, name: str, gain: str) -> Fraction | None
             return Kd
         return None if loop.zero is None else to_float32(Kd * loop.zero.exact)
     given = spec.controllers[name]
-    said = getattr(given, LAWS[given.type].fixed.get(gain, gain))
-    said = said.min if isinstance(said, GainSpec) else said
-    return None if said is None else to_float32(exact_number(said))
+    value = getattr(given, LAWS[given.type].fixed.get(gain, gain))
+    value = value.min if isinstance(value, GainSpec) else value
+    return None if value is None else to_float32(exact_number(value))
 
 
 def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivative:
@@ -187,8 +187,8 @@ def _numbers(
     if name != MOTION:
         expected = LAWS[spec.controllers[name].type].gains_in(spec.controllers[name])
     if set(texts) != set(expected):
-        wanted = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
-        raise CertificateError(f"the gains of {name} {wanted}")
+        mismatch = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
+        raise CertificateError(f"the gains of {name} {mismatch}")
     numbers = {gain: parse_exact(texts[gain]) for gain in expected}
     for gain, number in numbers.items():
         if not is_float32(number):

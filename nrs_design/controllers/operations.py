@@ -132,14 +132,14 @@ class StepLaw:
         return {c.name: c for c in self.coefficients}
 
     def read(
-        self, known: Mapping[str, V], compute: Mapping[Kind, Callable[[V, V], V]]
+        self, inputs: Mapping[str, V], compute: Mapping[Kind, Callable[[V, V], V]]
     ) -> dict[str, V]:
         """Return all values of a step: the operations, read with some kind of number.
 
         `known` are inputs, states and coefficients; `compute`, what a kind of operation makes of
         operands.
         """
-        found = dict(known)
+        found = dict(inputs)
         for operation in self.operations:
             left, right = found[operation.left], found[operation.right]
             found[operation.name] = compute[operation.kind](left, right)

@@ -62,7 +62,7 @@ class StepProgram:
         self._states = [places[law.following[state.name]] for state in law.states]
 
     def step(
-        self, mode: int, given: Sequence[np.float32]
+        self, mode: int, values: Sequence[np.float32]
     ) -> tuple[list[np.float32], list[np.float32], bool]:
         """Compute one step; return outputs, states after it, and whether it is valid.
 
@@ -71,12 +71,12 @@ class StepProgram:
         they were.
         """
         valid = mode < len(self._numbers)
-        for value, (low, high) in zip(given, self._limits, strict=True):
+        for value, (low, high) in zip(values, self._limits, strict=True):
             if not low <= value <= high:
                 valid = False
         if not valid:
-            return [np.float32(0)] * len(self._outputs), [*given[len(self.law.inputs) :]], False
-        found = [*given, *self._numbers[mode]]
+            return [np.float32(0)] * len(self._outputs), [*values[len(self.law.inputs) :]], False
+        found = [*values, *self._numbers[mode]]
         for compute, left, right in self._operations:
             found.append(compute(found[left], found[right]))
         return [found[i] for i in self._outputs], [found[i] for i in self._states], True

@@ -60,8 +60,8 @@ class Sector:
         # first in which contact is certain otherwise.
         if factor > 1 and self.surface != "touched" and not self.kept:
             return (self.noise() + rounding + travel) / gain
-        least = k * travel + (0 if self.kept else 2 * self.torque_noise)
-        return (self.noise() + rounding + least * lever) / gain
+        minimum_torque = k * travel + (0 if self.kept else 2 * self.torque_noise)
+        return (self.noise() + rounding + minimum_torque * lever) / gain
 
 
 def sector_of(spec: InteractionDesignSpec) -> Sector | str:
@@ -74,37 +74,37 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
     if spec.monitoring.surface != "fixed" and oldest - youngest > 1:
         return "ages of the force sample differ by more than one, so the order of contacts is lost"
     names = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
-    touched = [e for e in build_environments(spec) if e.name in names]
-    if not touched:
+    environments = [e for e in build_environments(spec) if e.name in names]
+    if not environments:
         return "no controller touches anything"
-    for e in touched:
+    for e in environments:
         if e.law.remembers or e.law.has_mass or e.preloaded:
             return f"the torque of {e.name} does not follow from angle and speed of the moment"
-    damping = max(e.load[1].high for e in touched)
+    damping = max(e.load[1].high for e in environments)
     speed = spec.monitoring.speed
     if damping and speed is None:
         return "a tissue has damping, and no `monitoring: speed` bounds what that adds"
-    return _sector(spec, touched, damping * (Fraction(0) if speed is None else speed.not_below))
+    return _sector(spec, environments, damping * (Fraction(0) if speed is None else speed.not_below))
 
 
-def _sector(spec: InteractionDesignSpec, touched: list[Environment], viscous: Fraction) -> Sector:
+def _sector(spec: InteractionDesignSpec, environments: list[Environment], viscous: Fraction) -> Sector:
     """Return the sector of touched environments, with the torque of damping in N m."""
-    said = spec.monitoring
-    assert said is not None
-    speed, skew, surface = map(_not_below, (said.speed, said.skew, said.surface_speed))
+    monitoring = spec.monitoring
+    assert monitoring is not None
+    speed, skew, surface = map(_not_below, (monitoring.speed, monitoring.skew, monitoring.surface_speed))
     # The surface moves on while the sample of the torque grows old.
     oldest = Fraction(0) if spec.sampling is None else spec.sampling.oldest
-    reading = said.angle_noise.not_below
+    reading = monitoring.angle_noise.not_below
     return Sector(
-        low=min(e.stiffness.low for e in touched),
-        high=max(e.stiffness.high for e in touched),
-        torque_noise=said.torque_noise.not_below + viscous,
+        low=min(e.stiffness.low for e in environments),
+        high=max(e.stiffness.high for e in environments),
+        torque_noise=monitoring.torque_noise.not_below + viscous,
         angle_noise=reading + speed * skew + surface * (oldest + skew),
         reading=reading,
-        surface=said.surface,
+        surface=monitoring.surface,
         surface_speed=surface,
         kept=spec.contact == "kept",
-        speed=None if said.speed is None else speed,
+        speed=None if monitoring.speed is None else speed,
     )
 
 

@@ -43,8 +43,8 @@ class LowPass:
         """Return the filtered force, in N m at the sensor, and the rates of the `states`."""
         sources = (force, *states)
         rates = [
-            combine((self.pole, before), (-self.pole, own))
-            for before, own in zip(sources, states, strict=False)
+            combine((self.pole, before), (-self.pole, state))
+            for before, state in zip(sources, states, strict=False)
         ]
         return states[-1], [*rates]
 
@@ -53,14 +53,14 @@ class LowPass:
 
         A `DesignError` if a step forgets nothing, so that the force never arrives.
         """
-        keep = to_float32(exponential_between(-self.pole * period)[0])
-        if keep == 1:
+        factor = to_float32(exponential_between(-self.pole * period)[0])
+        if factor == 1:
             raise DesignError(
                 "the filter of the force is lost in single precision: a step keeps all it holds",
                 remedy="raise its cutoff, or sample with a longer period",
                 at=("sensor", "filter", "cutoff"),
             )
-        return DiscreteLowPass(self.order, keep, to_float32(1 - keep))
+        return DiscreteLowPass(self.order, factor, to_float32(1 - factor))
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,18 +40,18 @@ class Term:
     form: LinearForm  # Value without rounding, over the state
     roundings: int  # Number of roundings of the term
 
-    def times(self, factor: Fraction, prefix: str, more: int) -> Term:
+    def times(self, factor: Fraction, prefix: str, roundings: int) -> Term:
         """Return the term times a single-precision factor, which is named in front.
 
         `prefix` is its name and a blank; `more`, how many roundings, that of the product included.
         """
-        return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
+        return Term(prefix + self.name, combine((factor, self.form)), self.roundings + roundings)
 
 
 def rounded_terms(
     law: StepLaw,
     mode: int,
-    given: Mapping[str, LinearForm],
+    inputs: Mapping[str, LinearForm],
     numbers: Mapping[str, Fraction] | None = None,
     errors: Mapping[str, LinearForm] | None = None,
 ) -> dict[str, tuple[Term, ...]]:
@@ -66,23 +66,23 @@ def rounded_terms(
     used within the step, it counts with the rounded terms in it besides: nobody has to know how
     large angles get.
     """
-    held, off, terms = numbers or {}, errors or {}, dict[str, tuple[Term, ...]]()
-    size = len(next(iter(given.values())))
+    replacements, off, terms = numbers or {}, errors or {}, dict[str, tuple[Term, ...]]()
+    size = len(next(iter(inputs.values())))
     for value in law.values:
         count = int(value.rounding == "term")
-        terms[value.name] = (Term(value.symbol, given[value.name], count),)
-    kept: dict[str, tuple[Term, ...]] = {}
+        terms[value.name] = (Term(value.symbol, inputs[value.name], count),)
+    results: dict[str, tuple[Term, ...]] = {}
     targets = {*law.outputs.values(), *law.following.values()}
     for operation in law.operations:
-        found = _terms(law, mode, operation, terms, held)
+        found = _terms(law, mode, operation, terms, replacements)
         if operation.rounding == "own" or operation.name in targets:
-            kept[operation.name] = found
+            results[operation.name] = found
         if operation.rounding == "own":
             forms = [zero(size), *(term.form for term in found)]
             forms += [off[operation.name]] if operation.name in off else []
             found = (Term(operation.symbol, combine(*((ONE, form) for form in forms)), 0),)
         terms[operation.name] = found
-    return kept
+    return results
 
 
 def _terms(
@@ -108,16 +108,16 @@ def _terms(
     if not left or not right:
         # A sum with zero is exact.
         return left or tuple(term.times(sign, "", 0) for term in right)
-    both = (*left, *(term.times(sign, "", 0) for term in right))
-    apart = operation.rounding == "angle"
-    more = int(not apart)
-    if any(term.roundings for term in both):
-        again = apart and operation.name not in law.following.values()
-        return tuple(t.times(ONE, "", int(t.roundings > 0) if again else more) for t in both)
+    summands = (*left, *(term.times(sign, "", 0) for term in right))
+    is_angle = operation.rounding == "angle"
+    added = int(not is_angle)
+    if any(term.roundings for term in summands):
+        rounds_again = is_angle and operation.name not in law.following.values()
+        return tuple(t.times(ONE, "", int(t.roundings > 0) if rounds_again else added) for t in summands)
     # A sum of exact numbers is off in proportion to itself.
     names = [" + ".join(term.name for term in side) for side in (left, right)]
     name = operation.symbol or f"({names[0]} {'+' if add else '-'} {names[1]})"
-    return (Term(name, combine(*((ONE, term.form) for term in both)), more),)
+    return (Term(name, combine(*((ONE, term.form) for term in summands)), added),)
 
 
 def check_range(law: StepLaw) -> None:
@@ -150,12 +150,12 @@ def counted_terms(
     with them, and as a whole. So what is subtracted exactly needs no rounding of its own.
     """
     found: dict[str, dict[str, int]] = {}
-    own = {o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"}
+    symbols = {o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"}
     for name, terms in rounded_terms(law, mode, given).items():
         counts = {t.name: t.roundings for t in terms if t.roundings and any(t.form)}
-        if name in own and own[name] not in counts:
+        if name in symbols and symbols[name] not in counts:
             # One rounding is that of the difference itself.
             earlier = {term: count for term, count in counts.items() if count > 1}
-            counts = {own[name]: 1} | earlier
+            counts = {symbols[name]: 1} | earlier
         found[name] = counts
     return found

@@ -76,26 +76,26 @@ class StepFrame:
     @property
     def numbers(self) -> dict[str, Fraction]:
         """The numbers of motion controller and filter, by the names of their coefficients."""
-        held = {} if self.takes else {"Kp": self.Kp, "Kd_over_T": self.D}
-        return held | (
+        numbers = {} if self.takes else {"Kp": self.Kp, "Kd_over_T": self.D}
+        return numbers | (
             {} if self.low_pass is None else {"p": self.low_pass.p, "q": self.low_pass.q}
         )
 
     @property
     def coefficients(self) -> Iterator[Coefficient]:
         """Coefficients of the motion controller and of the force filter."""
-        said = {"Kp": ("Kp", "rpm/rad"), "Kd_over_T": ("D", "rpm/rad")}
+        symbols = {"Kp": ("Kp", "rpm/rad"), "Kd_over_T": ("D", "rpm/rad")}
         for name, number in self.numbers.items():
-            yield Coefficient(name, *said.get(name, (name, "1")), (number,))
+            yield Coefficient(name, *symbols.get(name, (name, "1")), (number,))
 
 
 def step_parts(laws: Collection[DiscreteLaw]) -> tuple[StepPart, ...]:
     """Return the parts of some laws, each once: first of those that are given a position."""
-    placed = [law for law in laws if law.law.commands == "position"]
-    ordered = (*placed, *(law for law in laws if law not in placed))
-    used = {name for law in laws for name in law.numbers}
-    each = (part for law in ordered for part in law.law.parts(used, beside=bool(placed)))
-    return tuple({part.name: part for part in each}.values())
+    position_laws = [law for law in laws if law.law.commands == "position"]
+    ordered = (*position_laws, *(law for law in laws if law not in position_laws))
+    names = {name for law in laws for name in law.numbers}
+    parts = (part for law in ordered for part in law.law.parts(names, has_position=bool(position_laws)))
+    return tuple({part.name: part for part in parts}.values())
 
 
 def numbers_in_force(
@@ -117,7 +117,7 @@ def numbers_in_force(
 
 def _has(law: DiscreteLaw, part: StepPart) -> bool:
     """Tell whether a law has a part."""
-    return part.name in {own.name for own in law.law.parts(law.numbers, beside=False)}
+    return part.name in {part.name for part in law.law.parts(law.numbers, has_position=False)}
 
 
 def build_law(
@@ -150,12 +150,12 @@ def build_law(
     edges |= {} if limits.command is None else {"command_limit": (limits.command, "rpm")}
     edges |= {} if limits.integral is None else {INTEGRAL_LIMIT: (limits.integral, "rad")}
     lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
-    following = {name: made for part in parts for name, made in part.following.items()}
+    following = {name: result for part in parts for name, result in part.following.items()}
     first = {place.name: following[place.name] for place in places}
     referred = tuple(_referred(parts, placed=placed))
-    to_follow = "reference" if not placed or referred else "position"
+    reference_name = "reference" if not placed or referred else "position"
     takes_force = any(gain.name == FORCE_GAIN for part in parts for gain in part.gains)
-    motion = () if frame.streams else motion_operations(limits, to_follow, takes_force=takes_force)
+    motion = () if frame.streams else motion_operations(limits, reference_name, takes_force=takes_force)
     operations = (
         *_filtered(frame.order),
         *referred,
@@ -184,16 +184,16 @@ def build_law(
             replace(o, left=force.get(o.left, o.left), right=force.get(o.right, o.right))
             for o in operations
         ),
-        {"command": _command(frame, to_follow if placed else "", takes_force=takes_force)},
+        {"command": _command(frame, reference_name if placed else "", takes_force=takes_force)},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
 
 
-def _command(frame: StepFrame, placed: str, *, takes_force: bool) -> str:
+def _command(frame: StepFrame, position_name: str, *, takes_force: bool) -> str:
     """Return the name of the output; `placed`: the position input of laws, or empty."""
     if frame.streams:
-        return "relative" if frame.takes is Takes.VELOCITY else placed or "next_reference"
+        return "relative" if frame.takes is Takes.VELOCITY else position_name or "next_reference"
     if frame.limits.command is not None:
         return "limited_command"
     return "eased" if takes_force else "command"
@@ -233,14 +233,14 @@ def _clamped(part: StepPart) -> StepPart:
         return part
     *before, last = part.after
     summed = replace(last, name="summed_integral")
-    cut = Operation(made, "saturate", INTEGRAL_LIMIT, summed.name)
-    return replace(part, after=(*before, summed, cut))
+    limit = Operation(made, "saturate", INTEGRAL_LIMIT, summed.name)
+    return replace(part, after=(*before, summed, limit))
 
 
 def _coefficients(
     laws: Collection[DiscreteLaw], parts: Iterable[StepPart], idle: Fraction | None
 ) -> Iterator[Coefficient]:
-    beside = len({law.law.commands for law in laws}) > 1
+    mixed_commands = len({law.law.commands for law in laws}) > 1
     for part in parts:
         each = [numbers_in_force(law, (part,), idle) for law in laws]
         for gain in part.gains:
@@ -250,7 +250,7 @@ def _coefficients(
                 gain.name,
                 gain.symbol,
                 gain.unit,
-                values[:1] if gain.common and not beside else values,
+                values[:1] if gain.common and not mixed_commands else values,
                 symbols=symbols if gain.idle else (),
             )
 

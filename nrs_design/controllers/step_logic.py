@@ -54,9 +54,9 @@ class StepLogic:
 
         A `DesignError` if a threshold is beyond single precision, or a time too long to be counted.
         """
-        seen = {name for switch in logic.switches for name in switch.conditions}
-        stays = {name: logic.stay(name) for name in modes}
-        samples = [0 if stay is None else ceil(stay.value / period) for stay in stays.values()]
+        signal_names = {name for switch in logic.switches for name in switch.conditions}
+        dwells = {name: logic.stay(name) for name in modes}
+        samples = [0 if stay is None else ceil(stay.value / period) for stay in dwells.values()]
         if max(samples) > LONGEST:
             raise DesignError(
                 "a controller is held for more samples than 32 bits count",
@@ -65,12 +65,12 @@ class StepLogic:
             )
         return cls(
             modes.index(logic.start),
-            tuple(name for name in UNITS if name in seen),
+            tuple(name for name in UNITS if name in signal_names),
             tuple(_switch(switch, modes) for switch in logic.switches),
             tuple(samples),
         )
 
-    def step(self, mode: int, held: int, signals: Mapping[str, float]) -> tuple[int, int]:
+    def step(self, mode: int, count: int, signals: Mapping[str, float]) -> tuple[int, int]:
         """Return mode and count after a sample.
 
         Before it, `mode` has been active for `held` samples. Signals are single-precision numbers;
@@ -78,11 +78,11 @@ class StepLogic:
         """
         if mode >= len(self.stays):
             return self.start, 1
-        if held >= self.stays[mode]:
+        if count >= self.stays[mode]:
             for switch in self.switches:
                 if switch.source == mode and all(_holds(b, signals) for b in switch.bounds):
                     return switch.target, 1
-        return mode, min(held + 1, LONGEST)
+        return mode, min(count + 1, LONGEST)
 
 
 def _holds(bound: SignalBound, signals: Mapping[str, float]) -> bool:

@@ -60,7 +60,7 @@ def assume_loop(
     if integrated and all(e.law.has_rest for e in loop.environments):
         yield assume("at-a-switch.deflection")
     for e in loop.environments:
-        yield from e.law.assumptions(e.name, alone=len(loop.environments) == 1)
+        yield from e.law.assumptions(e.name, is_only=len(loop.environments) == 1)
     yield from () if loop.idle is None else _assume_idle(loop, loop.idle)
     # If contact may be lost, each statement says whether it covers the loss.
     if free:
@@ -208,7 +208,7 @@ def assume_sampled_loop(
     yield from _assume_contacts(design)
     yield _assume_tissue(environments, axis)
     for e in environments:
-        yield from e.law.assumptions(e.name, alone=len(environments) == 1)
+        yield from e.law.assumptions(e.name, is_only=len(environments) == 1)
     # For contact loss at the surface, each statement says whether it covers it.
     if loss is Loss.BY_LAWS:
         yield from _assume_kept_contact(design, alone=program.idle is None)

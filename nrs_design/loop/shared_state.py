@@ -169,7 +169,7 @@ def shared_state(
         realize(loop),
         loop.given,
         Joint.of(plant, design.motion),
-        design.leading_laws(mixed=idle is not None)[0],
+        design.leading_laws(is_mixture=idle is not None)[0],
         idle,
         conditions.offset,
         next((law.states for law in laws if law.bleeds), ()),

@@ -67,9 +67,9 @@ class AxisType(StrEnum):
 
     def named(self, text: str) -> str:
         """Return a name with its unit in brackets, such as ``vm [rad/s]``, on this axis."""
-        name, opened, rest = text.partition(" [")
-        said, closed, more = rest.partition("]")
-        return f"{name}{opened}{self.unit(said)}{closed}{more}" if opened else text
+        name, opened, tail = text.partition(" [")
+        unit_text, closed, suffix = tail.partition("]")
+        return f"{name}{opened}{self.unit(unit_text)}{closed}{suffix}" if opened else text
 
     @property
     def fine(self) -> float:

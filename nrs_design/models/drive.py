@@ -45,8 +45,8 @@ SLIDING: Mapping[Takes, str] = {Takes.VELOCITY: "m/s", Takes.POSITION: "m", Take
 
 def taken_in(command: str) -> Takes | None:
     """Return the command interface with a unit; None for commands of a motor."""
-    each = ((takes, unit) for commands in (COMMANDS, SLIDING) for takes, unit in commands.items())
-    return next((takes for takes, unit in each if unit == command), None)
+    interfaces = ((interface, unit) for commands in (COMMANDS, SLIDING) for interface, unit in commands.items())
+    return next((takes for takes, unit in interfaces if unit == command), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,26 +100,26 @@ class Drive:
         n = self.order
 
         def widened(
-            M: MultiAffine, more: Mapping[tuple[str, ...], Sequence[Fraction]]
+            M: MultiAffine, extra: Mapping[tuple[str, ...], Sequence[Fraction]]
         ) -> MultiAffine:
             """Put in a column for d before that of delta, and a row before the last one."""
             terms: dict[tuple[str, ...], Rows] = {}
             for symbols, rows in M.terms.items():
                 pulled = -ONE if LOAD[0] in symbols else ZERO
                 full = [(*r[: n - 1], pulled * r[n - 1], *r[n - 1 :]) for r in rows]
-                terms[symbols] = (*full[:-1], (ZERO,) * (n + 2), full[-1]) if more else tuple(full)
-            for symbols, row in more.items():
+                terms[symbols] = (*full[:-1], (ZERO,) * (n + 2), full[-1]) if extra else tuple(full)
+            for symbols, row in extra.items():
                 blank = (ZERO,) * (n + 2)
                 terms[symbols] = (*[blank] * (n - 1), tuple(row), blank)
             return MultiAffine(terms)
 
-        own = {name: [ZERO] * (n + 2) for name in MEMORY}
-        own[MEMORY[0]][n - 1] = own[MEMORY[1]][n - 1] = -ONE
-        own[MEMORY[1]][n] = ONE
+        memory_rows = {name: [ZERO] * (n + 2) for name in MEMORY}
+        memory_rows[MEMORY[0]][n - 1] = memory_rows[MEMORY[1]][n - 1] = -ONE
+        memory_rows[MEMORY[1]][n] = ONE
         return replace(
             self,
             states=(*self.states, memory),
-            rates=widened(self.rates, {(name,): row for name, row in own.items()}),
+            rates=widened(self.rates, {(name,): row for name, row in memory_rows.items()}),
             speed=None if self.speed is None else widened(self.speed, {}),
             ranges={**self.ranges, **dict(zip(MEMORY, rates, strict=True))},
             memory=memory,
@@ -222,17 +222,17 @@ def position_drive(loop: MotionLoop) -> Drive:
     A, B = _observable(loop)
     n = len(A)
     # At rest at 1 under the command 1: of 0 = A z + B, from the first row on.
-    rest = [ONE]
+    steady_state = [ONE]
     for row, b in zip(A[:-1], B[:-1], strict=True):
-        rest.append(-row[0] - b)
+        steady_state.append(-row[0] - b)
     # In z~ = z - rest * position, the rows lose what the position does to their rest. It goes last.
     first, *others = (
-        [sum((a * r for a, r in zip(row, rest, strict=True)), ZERO), *row[1:], b]
+        [sum((a * r for a, r in zip(row, steady_state, strict=True)), ZERO), *row[1:], b]
         for row, b in zip(A, B, strict=True)
     )
     shifted = (
         [a - r * f for a, f in zip(row, first, strict=True)]
-        for row, r in zip(others, rest[1:], strict=True)
+        for row, r in zip(others, steady_state[1:], strict=True)
     )
     rates = [(*row[1:-1], row[0], row[-1]) for row in (*shifted, first)]
     jumps = B[0] != 0

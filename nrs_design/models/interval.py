@@ -68,7 +68,7 @@ def turn(value: Number, radius: Number) -> Number:
 
 def moving(numbers: Iterable[Interval]) -> str:
     """Return whether ``all`` numbers with a range may move there, or ``some``; empty if none."""
-    ranged = [number for number in numbers if number.low != number.high]
-    if not any(number.varies for number in ranged):
+    ranges = [number for number in numbers if number.low != number.high]
+    if not any(number.varies for number in ranges):
         return ""
-    return "some" if any(n.is_constant for n in ranged) else "all"
+    return "some" if any(n.is_constant for n in ranges) else "all"

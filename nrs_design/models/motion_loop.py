@@ -66,15 +66,15 @@ class Realization:
         the integral of u is ``xn + a[n-1] xn-1 + ... + a1 x1`` plus a0 times that of x1. A loop
         whose output does not move with a lasting command has none: an `AssemblyError`.
         """
-        first, *rest = self.C
+        first, *tail = self.C
         if first == 0:
             raise AssemblyError(
                 "the motion loop does not follow a lasting command: its gain at zero is zero",
                 remedy="give it a numerator with a constant term",
             )
         share = -self.A[-1][0] / first
-        own = [-a - share * c for a, c in zip(self.A[-1][1:], rest, strict=True)]
-        form = [*own, Fraction(1), *zero(len(output) - self.order)]
+        row = [-a - share * c for a, c in zip(self.A[-1][1:], tail, strict=True)]
+        form = [*row, Fraction(1), *zero(len(output) - self.order)]
         return combine((Fraction(1), form), (share, output))
 
 

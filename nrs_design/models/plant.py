@@ -38,9 +38,9 @@ class Plant:
         motor = self.actuator_ranges
         return self.drive or motor_drive(motor.gain, motor.time_constant, self.load_inertia)
 
-    def held_at(self, touched: Sequence[Environment]) -> Drive:
+    def held_at(self, environments: Sequence[Environment]) -> Drive:
         """Return the drive between samples, with the memory of an environment."""
-        for environment in touched:
+        for environment in environments:
             if (rates := environment.memory_rates) is not None:
                 memory = f"{environment.name}: {environment.law.states[-1]}"
                 return self.held.remembering(memory, rates)

@@ -109,10 +109,10 @@ def _simulate(
         progress(f"{scenario.name}, {step}")
 
     if engine == "exact":
-        run = simulate_exactly(spec, *given, max_steps=most, tell=tell)
+        run = simulate_exactly(spec, *given, max_steps=most, progress=tell)
     else:
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
-        run = simulate_sampled(timed, *given, max_steps=most, tell=tell)
+        run = simulate_sampled(timed, *given, max_steps=most, progress=tell)
     return Simulated(scenario, run, summarize(spec, scenario, run))
 
 

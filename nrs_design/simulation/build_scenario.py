@@ -163,10 +163,10 @@ def _contact_switches(contacts: Mapping[str, str], surfaces: Sequence[Surface]) 
     names = list(contacts)
     for place, (environment, target) in enumerate(contacts.items()):
         later = (i for i, s in enumerate(surfaces) if s.environment in names[place + 1 :])
-        outside = tuple(Condition(f"{DEPTH}{i}", high=0.0) for i in later)
+        no_contact = tuple(Condition(f"{DEPTH}{i}", high=0.0) for i in later)
         for source, (i, surface) in product(dict.fromkeys(contacts.values()), enumerate(surfaces)):
             if source != target and surface.environment == environment:
-                yield Switch(source, target, (Condition(f"{DEPTH}{i}", low=0.0), *outside))
+                yield Switch(source, target, (Condition(f"{DEPTH}{i}", low=0.0), *no_contact))
 
 
 def logic_control(spec: InteractionDesignSpec) -> Control:

@@ -45,8 +45,8 @@ class Coverage:
         if errors.friction:
             yield "friction may change its sign within a period"
         angles = None if self.spec.disturbances is None else self.spec.disturbances.largest_angle
-        held = (name for name in ("angle", "reference") if name in run.response.signals)
-        if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
+        signals = (name for name in ("angle", "reference") if name in run.response.signals)
+        if angles is not None and any(abs(run.response[n]).max() > angles.si for n in signals):
             yield "the angle is larger than the proof takes it for"
         if errors.force_noise:
             yield "the noise of the torque has no bound"
@@ -97,10 +97,10 @@ class Coverage:
             if run.sampling is not None or sampling is not None:
                 yield f"the proof is not about the {run.engine} loop"
             return
-        period, least, most = run.sampling
+        period, youngest, oldest = run.sampling
         shortest, longest = sampling.delay
-        same = period == float(sampling.period.exact) and run.outer == float(sampling.outer)
-        if not same or least < shortest or most > longest:
+        equal_periods = period == float(sampling.period.exact) and run.outer == float(sampling.outer)
+        if not equal_periods or youngest < shortest or oldest > longest:
             yield "period or delay are not those of the proof"
 
     def _surroundings(self) -> Iterator[str]:
@@ -128,8 +128,8 @@ def end_of_command(scenario: Scenario) -> float | None:
 def _largest_command(scenario: Scenario, run: Run) -> float:
     """Return the largest command; a sinusoid may have its peak between two instants."""
     profile = scenario.profile
-    seen = float(abs(run.response["hand"]).max())
+    peak = float(abs(run.response["hand"]).max())
     if not profile.omega:
-        return seen
+        return peak
     (piece,) = profile.pieces
-    return max(seen, abs(profile.mean) + abs(piece.slope / profile.omega))
+    return max(peak, abs(profile.mean) + abs(piece.slope / profile.omega))

@@ -43,7 +43,7 @@ def simulate_exactly(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Progress = silent,
+    progress: Progress = silent,
 ) -> Run:
     """Simulate a scenario in continuous time, without what acts on the sampled loop alone.
 
@@ -51,7 +51,7 @@ def simulate_exactly(
     `EVENT_STEPS` of them. A `DesignError` if a surface is not linear, or a law is not modelled with
     it.
     """
-    return _Engine(Loop(spec, plant, design, scenario), max_steps, tell).run()
+    return _Engine(Loop(spec, plant, design, scenario), max_steps, progress).run()
 
 
 @dataclass(frozen=True)
@@ -104,13 +104,13 @@ class _Engine:
     def run(self) -> Run:
         """Go from event to event until the end."""
         scenario = self.loop.scenario
-        end, holds, agenda = scenario.duration, scenario.control.stays, self._agenda()
+        end, dwells, agenda = scenario.duration, scenario.control.stays, self._agenda()
         while self.t < end and self.stopped is None:
             while agenda and agenda[0][0] <= self.t:
                 agenda.popleft()[1]()
                 self._settle()
             limit = min(end, agenda[0][0]) if agenda else end
-            timer = self.since + holds.get(self.controller, 0.0)
+            timer = self.since + dwells.get(self.controller, 0.0)
             waits = timer > self.t
             crossed = self._advance(min(limit, timer) if waits else limit)
             self.crossings += crossed
@@ -182,10 +182,10 @@ class _Engine:
     def _advance(self, limit: float) -> bool:
         """Follow the flow up to the first event, or to a limit; tell whether there was an event."""
         location, flow = self.location, self.location.flow
-        above = [j in self.inside for j in range(len(self.surfaces))]
-        above += [j not in self.pulling for j in location.dampers]
-        above += [bound in self.satisfied for bound in location.bounds]
-        sides = np.where(above, 1.0, -1.0)
+        positive = [j in self.inside for j in range(len(self.surfaces))]
+        positive += [j not in self.pulling for j in location.dampers]
+        positive += [bound in self.satisfied for bound in location.bounds]
+        sides = np.where(positive, 1.0, -1.0)
         while self.t < limit and self.stopped is None:
             states = flow.chunk(self.z, min(CHUNK, int((limit - self.t) / flow.h)))
             if count := flow.first_doubtful(states, sides):
@@ -305,6 +305,6 @@ class _Engine:
         )
 
 
-def _is_above(value: float, before: bool) -> bool:
+def _is_above(value: float, was_above: bool) -> bool:
     """Tell whether a signal is above zero, or still counts so."""
-    return value > -TOLERANCE if before else value > TOLERANCE
+    return value > -TOLERANCE if was_above else value > TOLERANCE

@@ -85,8 +85,8 @@ class Flow:
         # Where a signal turns, it is above its tangents, which meet after this time.
         turns = (falls < 0) & (rises > 0)
         slopes = np.where(turns, rises - falls, 1.0)
-        meet = np.where(turns, begin - end + rises * self.h, 0.0) / slopes
-        lowest = np.minimum(np.minimum(begin, end), begin + falls * meet)
+        intersections = np.where(turns, begin - end + rises * self.h, 0.0) / slopes
+        lowest = np.minimum(np.minimum(begin, end), begin + falls * intersections)
         doubtful = np.append((lowest <= 0).any(axis=1), True)
         return int(doubtful.argmax())
 

@@ -31,10 +31,10 @@ def greedy_run(
     zero a round begins, or no deadline has been missed. The modes of the run are those of
     `all_modes`. A ValueError if the rules are too fine for this grid.
     """
-    key_norms, every = [norms] if callable(norms) else list(norms), all_modes(system)
-    rules, advance = Rules.create(every, step), _advance(system, step)
+    key_norms, full_system = [norms] if callable(norms) else list(norms), all_modes(system)
+    rules, advance = Rules.create(full_system, step), _advance(system, step)
     action_keys = (rules.mode if system.clock is None else rules.target) % len(key_norms)
-    free = np.arange(len(every.modes)) >= len(system.modes)
+    free = np.arange(len(full_system.modes)) >= len(system.modes)
     states, actions, node = [initial], list[int](), 0
     for _ in range(steps):
         choices = rules.choices[node]

@@ -185,10 +185,10 @@ class Loop:
 
     def _reference(self, law: CompliantLaw, torque: Array) -> Array:
         """Return the row of the position that the motion loop follows."""
-        moved = self.row("offset")
+        correction = self.row("offset")
         if law.commands != "velocity":
-            moved = self._respond(law, torque)[0]
-        reference = self.row("commanded position") + moved
+            correction = self._respond(law, torque)[0]
+        reference = self.row("commanded position") + correction
         if law.bleeds:
             return reference
         # States of other laws stay in the reference, and decay there.

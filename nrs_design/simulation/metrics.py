@@ -141,7 +141,7 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
     t, torque, velocity = response.t, response["torque"], response["velocity"]
     limit, desired = spec.limits.torque.si, spec.limits.torque.si / spec.limits.velocity.si
     size, contact_time = np.abs(torque), time_above(t, (torque != 0).astype(float), 0.5)
-    in_contact = np.sqrt((t[-1] - t[0]) / contact_time) if contact_time else 0.0
+    contact_factor = np.sqrt((t[-1] - t[0]) / contact_time) if contact_time else 0.0
     return {
         "duration": float(t[-1]),
         "peak_torque": float(size.max()),
@@ -156,12 +156,12 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
         "desired_impedance": desired,
         "withdrawal_times": list(withdrawal_times(t, response["hand"], torque)),
         "effort": asdict(effort(t, torque, velocity)),
-        "rms_torque_in_contact": float(rms(t, torque) * in_contact),
+        "rms_torque_in_contact": float(rms(t, torque) * contact_factor),
         "force_control": _force_control(spec, scenario, run),
         "switches": len(run.switches),
         "shortest_stay": run.shortest_stay,
         "chatter": run.chatter,
-        "contacts": sum(made for _, _, made in run.contacts),
+        "contacts": sum(is_met for _, _, is_met in run.contacts),
     }
 
 

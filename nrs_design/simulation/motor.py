@@ -42,9 +42,9 @@ class Motor:
 
     def _glide(self, theta: float, omega: float, final: float, time: float) -> tuple[float, float]:
         """Let the velocity tend to a final one."""
-        gone = -math.expm1(-time / self.tau)
-        moved = self.tau * gone
-        return theta + moved * omega + (time - moved) * final, omega + gone * (final - omega)
+        fraction = -math.expm1(-time / self.tau)
+        coefficient = self.tau * fraction
+        return theta + coefficient * omega + (time - coefficient) * final, omega + fraction * (final - omega)
 
 
 @dataclass

@@ -63,6 +63,6 @@ def scaled_matrices(*matrices: IntegerMatrix) -> list[Array]:
 
 def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:
     """Return the modes at one corner of the constant parameters, switched arbitrarily."""
-    at = {corners[corner] for corners in system.switching.fixed_ends}
-    modes = tuple(mode for mode in system.modes if mode.name in at)
+    names = {corners[corner] for corners in system.switching.fixed_ends}
+    modes = tuple(mode for mode in system.modes if mode.name in names)
     return system.with_modes(modes, system.states, Switching())

@@ -85,10 +85,10 @@ def _pieces(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> Itera
     """Yield a period in pieces, the last of each step with the reset that follows it."""
     fine, maps, matrices = fine_step(system), system.switching.maps(), mode_matrices(system)
     # Many steps in a period leave fewer samples for each.
-    most = max(1, _SAMPLES // (_FEWEST * len(steps)))
+    max_count = max(1, _SAMPLES // (_FEWEST * len(steps)))
     for k, (mode, time) in enumerate(steps):
         A, discrete = matrices[mode], system.time is Time.DISCRETE
-        count = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
+        count = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), max_count)
         factor = A if discrete else expm(A * (time / count))
         yield from [(mode, time / count, factor)] * (count - 1)
         successor, _ = steps[(k + 1) % len(steps)]
@@ -100,7 +100,7 @@ def _pieces(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> Itera
 
 def _periods(radius: float, samples: int) -> int:
     exponent = math.log(max(radius, 1.0))
-    wanted = math.ceil(math.log(_GROWTH) / exponent) if exponent > 1e-6 else _MOST
+    periods = math.ceil(math.log(_GROWTH) / exponent) if exponent > 1e-6 else _MOST
     # Three periods of a growth by many decades would leave the range of doubles.
     fewest = _FEWEST if exponent < 100 else 1
-    return max(fewest, min(wanted, _MOST, _SAMPLES // samples))
+    return max(fewest, min(periods, _MOST, _SAMPLES // samples))

@@ -114,8 +114,8 @@ def _stay_rules(system: SwitchedSystem, step: float) -> Rules:
         last = base[k + 1] - 1
         for number, node in enumerate(range(base[k], last + 1), start=1):
             successor = node + 1 if node < last else node if highest is None else None
-            stays = [] if successor is None else [graph.action(k, 0, successor)]
-            graph.choices[node] = stays + (exits[k] if number >= fewest else [])
+            continuations = [] if successor is None else [graph.action(k, 0, successor)]
+            graph.choices[node] = continuations + (exits[k] if number >= fewest else [])
     return graph.rules()
 
 

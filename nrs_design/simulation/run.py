@@ -69,12 +69,12 @@ class Run:
         return [b - a for (a, _), (b, _) in pairwise(self.switches)]
 
 
-def common_lever_arm(spec: InteractionDesignSpec, touched: Iterable[str]) -> float | None:
+def common_lever_arm(spec: InteractionDesignSpec, environments: Iterable[str]) -> float | None:
     """Return the lever arm in m that environments have in common; None if there is no such.
 
     What is no environment by itself has no arm.
     """
     known = spec.environments
-    arms = {known[name].lever_arm if name in known else None for name in touched}
+    arms = {known[name].lever_arm if name in known else None for name in environments}
     arm = arms.pop() if len(arms) == 1 else None
     return None if arm is None else arm.si

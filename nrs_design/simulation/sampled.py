@@ -24,7 +24,7 @@ def simulate_sampled(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Progress = silent,
+    progress: Progress = silent,
 ) -> Run:
     """Simulate a scenario with the exported law, for at most `max_steps` samples.
 
@@ -45,7 +45,7 @@ def simulate_sampled(
     stopped = None
     if len(samples) < complete:
         stopped = f"{max_steps} samples by {samples[-1].time:.6g} s: the budget is used up"
-    return axis.run(samples, stopped, tell)
+    return axis.run(samples, stopped, progress)
 
 
 def _sampling(

@@ -199,9 +199,9 @@ class SampledAxis:
             self._switch(t, self.schedule.popleft()[1])
         signals = {COMMAND: self.tissue.direction * hand, TORQUE: self.tissue.direction * force}
         if self.logic is not None:
-            rounded = {name: float(np.float32(value)) for name, value in signals.items()}
+            float32_signals = {name: float(np.float32(value)) for name, value in signals.items()}
             mode = self.modes[self.controller]
-            mode, self.samples_in_mode = self.logic.step(mode, self.samples_in_mode, rounded)
+            mode, self.samples_in_mode = self.logic.step(mode, self.samples_in_mode, float32_signals)
             self._switch(t, self.program.law.modes[mode])
             return
         signals |= {f"{DEPTH}{j}": depth for j, depth in enumerate(depths)}

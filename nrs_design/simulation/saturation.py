@@ -28,12 +28,12 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
         # A signal depends on the states and on the signals before it, saturated or linear.
         saturated = linear = states
         for signal, row, column in zip(saturation.signals, rows, columns, strict=True):
-            argument, plain = ((row[:, : x.shape[1]] * x).sum(axis=1) for x in (saturated, linear))
+            argument, linear_value = ((row[:, : x.shape[1]] * x).sum(axis=1) for x in (saturated, linear))
             limit = float(signal.limit)
             clipped = np.clip(argument, -limit, limit)
-            derivatives += column * (clipped - plain)[:, None]
+            derivatives += column * (clipped - linear_value)[:, None]
             saturated = np.column_stack([saturated, clipped])
-            linear = np.column_stack([linear, plain])
+            linear = np.column_stack([linear, linear_value])
         return np.asarray(derivatives)
 
     return rates

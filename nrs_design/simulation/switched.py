@@ -99,5 +99,5 @@ def all_modes(system: SwitchedSystem) -> SwitchedSystem:
 
 def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
-    kept = system.modes[mode]
-    return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
+    mode_alone = system.modes[mode]
+    return replace(system, modes=(mode_alone,), states=system.states[: mode_alone.A.shape[0]])

@@ -83,11 +83,11 @@ class TimeResponse:
         `identify` read these columns.
         """
         # A table has one row for each instant: the last one of a jump.
-        kept = np.append(np.diff(self.t) > 0, True)
+        is_last = np.append(np.diff(self.t) > 0, True)
         rows = [("time_s", self.t), *((signal.column, row) for signal, row in self._rows())]
-        modes = [self.modes[k] for k in self.mode[kept].tolist()]
+        modes = [self.modes[k] for k in self.mode[is_last].tolist()]
         text = io.StringIO()
         table = csv.writer(text, lineterminator="\n")
         table.writerow([*(name for name, _ in rows), "mode"])
-        table.writerows(zip(*(row[kept].tolist() for _, row in rows), modes, strict=True))
+        table.writerows(zip(*(row[is_last].tolist() for _, row in rows), modes, strict=True))
         return text.getvalue()

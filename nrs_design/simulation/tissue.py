@@ -46,7 +46,7 @@ class Tissue:
         At an angle in rad and a velocity in rad/s.
         """
         pairs = zip(self.surfaces, self._pushes(theta, omega), strict=True)
-        return sum((surface.sign * push for surface, push in pairs), 0.0)
+        return sum((surface.sign * force for surface, force in pairs), 0.0)
 
     def sample(self, time: float, theta: float, omega: float) -> float:
         """Return `torque`, and note the surfaces that have been met and lost since last time."""

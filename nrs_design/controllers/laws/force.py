@@ -39,10 +39,10 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         """Return the gain: the law has no memory."""
         return DiscreteLaw(type(self), {"Kf": self.Kp} if self.Kp else {})
 
-    def find_fault(self, given: ForceControllerSpec) -> str | None:
+    def find_fault(self, spec: ForceControllerSpec) -> str | None:
         """Return the fault of a negative gain, or of a gain unlike the spec."""
         negative = "gain Kp is negative" if self.Kp < 0 else None
-        return AbstractCompliantLaw.find_fault(self, given) or negative
+        return AbstractCompliantLaw.find_fault(self, spec) or negative
 
 
 LAW = ProportionalForce

@@ -43,9 +43,9 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     Kt: Fraction = Fraction(0)
 
     @classmethod
-    def gains_in(cls, given: ImpedanceControllerSpec) -> tuple[str, ...]:
+    def gains_in(cls, spec: ImpedanceControllerSpec) -> tuple[str, ...]:
         """Return the names of the gains; Kt needs a value in the spec."""
-        return ("Mt", "Bt") if given.Kt is None else ("Mt", "Bt", "Kt")
+        return ("Mt", "Bt") if spec.Kt is None else ("Mt", "Bt", "Kt")
 
     @property
     def spring(self) -> Fraction:
@@ -95,13 +95,13 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return DiscreteLaw(cls, numbers | ({"Kt": Kt} if Kt else {}))
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+    def parts(cls, number_names: Collection[str], *, has_position: bool) -> tuple[StepPart, ...]:
         """Return ``xref = xref + T (v - vm)``; the reference of after the error is formed.
 
         Beside controllers that are given a position, the reference is counted from that position;
         while one of those is active, it and the velocity of the admittances decay.
         """
-        return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
+        return (_admittance(sprung="Kt" in number_names, inert="a" in number_names, beside=has_position),)
 
 
 LAW = Admittance
@@ -133,9 +133,9 @@ _COMMANDED = Value(
 
 
 def _admittance(*, sprung: bool, inert: bool, beside: bool) -> StepPart:
-    place, follows = (_OFFSET, "next_offset") if beside else (_REFERENCE, "next_reference")
+    place, successor = (_OFFSET, "next_offset") if beside else (_REFERENCE, "next_reference")
     commanded = sprung and not beside
-    following = {place.name: follows} | ({"velocity": "next_velocity"} if inert else {})
+    following = {place.name: successor} | ({"velocity": "next_velocity"} if inert else {})
     return StepPart(
         "admittance",
         tuple(_gains(sprung=sprung, inert=inert, beside=beside)),
@@ -170,13 +170,13 @@ def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:
             yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
         yield Operation("pull", "multiply", "Kt", "offset")
         yield Operation("felt", "add", FORCE, "pull")
-    felt = "felt" if sprung else FORCE
+    force_name = "felt" if sprung else FORCE
     if inert:
         yield Operation("kept", "multiply", "a", "velocity")
-        yield Operation("pushed", "multiply", "b", felt)
+        yield Operation("pushed", "multiply", "b", force_name)
         yield Operation("next_velocity", "add", "kept", "pushed")
     else:
-        yield Operation("velocity", "multiply", "b", felt, "own", "vm")
+        yield Operation("velocity", "multiply", "b", force_name, "own", "vm")
     # The reference moves on with the velocity of before this sample, where it is a state.
     yield Operation("wanted", "saturate", "velocity_limit", "velocity_command")
     yield Operation("relative", "subtract", "wanted", "velocity")

@@ -101,7 +101,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         """
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+    def parts(cls, number_names: Collection[str], *, has_position: bool) -> tuple[StepPart, ...]:
         """Return the operations of the law: by default, those of a position controller.
 
         `used` are the names of the numbers that laws of the program have; `beside`: some
@@ -110,7 +110,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return (PROPORTIONAL,)
 
     @classmethod
-    def gains_in(cls, given: S) -> tuple[str, ...]:
+    def gains_in(cls, spec: S) -> tuple[str, ...]:
         """Return the names of the gains that a controller of a spec has; by default all."""
         return tuple(cls.units)
 
@@ -148,6 +148,6 @@ class DiscreteLaw:
     @property
     def coefficients(self) -> dict[str, Fraction]:
         """The numbers by the symbols that formulas have for them."""
-        parts = self.law.parts(self.numbers, beside=False)
+        parts = self.law.parts(self.numbers, has_position=False)
         symbols = {gain.name: gain.symbol for part in parts for gain in part.gains}
         return {symbols[name]: number for name, number in self.numbers.items()}

@@ -89,15 +89,15 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         return DiscreteLaw(type(self), {name: number for name, number in numbers.items() if number})
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+    def parts(cls, number_names: Collection[str], *, has_position: bool) -> tuple[StepPart, ...]:
         """Return the correction by the force error, and that by its integral."""
         return PROPORTIONAL, INTEGRAL
 
-    def find_fault(self, given: IntegralControllerSpec) -> str | None:
+    def find_fault(self, spec: IntegralControllerSpec) -> str | None:
         """Return the fault of gains that are not positive, or unlike the spec."""
         if self.Kp <= 0 or self.Ki <= 0:
             return "gains Kp and Ki are not positive"
-        return AbstractCompliantLaw.find_fault(self, given)
+        return AbstractCompliantLaw.find_fault(self, spec)
 
 
 LAW = IntegralForce

@@ -33,9 +33,9 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
     R: Fraction = Fraction(1)  # Wanted inertia over that of the joint; 1 is no gain of the law
 
     @classmethod
-    def gains_in(cls, given: TorqueImpedanceSpec) -> tuple[str, ...]:
+    def gains_in(cls, spec: TorqueImpedanceSpec) -> tuple[str, ...]:
         """Return the names of the gains; R needs a value other than 1 in the spec."""
-        return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
+        return ("K", "D") if spec.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Refuse: a robot that takes torques is modelled in the sampled loop alone."""
@@ -55,9 +55,9 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         return DiscreteLaw(type(self), numbers)
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+    def parts(cls, number_names: Collection[str], *, has_position: bool) -> tuple[StepPart, ...]:
         """Return the gains of the motion controller, which are its own; and that of the force."""
-        force = (StepGain(FORCE_GAIN, "Kf", "1"),) if FORCE_GAIN in used else ()
+        force = (StepGain(FORCE_GAIN, "Kf", "1"),) if FORCE_GAIN in number_names else ()
         gains = (StepGain("Kp", "Kp", "N*m/rad"), StepGain("Kd_over_T", "D", "N*m/rad"), *force)
         return (StepPart("torque", gains, (POSITION,)),)
 

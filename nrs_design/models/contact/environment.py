@@ -71,18 +71,18 @@ class Environment:
         """
         for law in self.corners:
             _ = law.load
-        beside = self.parameters.get(self.law.beside, Interval.point(Fraction(0)))
-        return self.stiffness, beside
+        damping = self.parameters.get(self.law.beside, Interval.point(Fraction(0)))
+        return self.stiffness, damping
 
     @property
     def memory_rates(self) -> tuple[Interval, Interval] | None:
         """Ranges of the rates of its law in 1/s; None where it has no memory of its own."""
-        each = [law.memory_rates for law in (self.nominal, *self.corners)]
-        found = [rates for rates in each if rates is not None]
+        law_rates = [law.memory_rates for law in (self.nominal, *self.corners)]
+        found = [rates for rates in law_rates if rates is not None]
         if not found:
             return None
-        decays, follows = (Interval(r[0], min(r), max(r)) for r in zip(*found, strict=True))
-        return decays, follows
+        decays, follow_rate = (Interval(r[0], min(r), max(r)) for r in zip(*found, strict=True))
+        return decays, follow_rate
 
     def scaled(self, scale: Fraction) -> Environment:
         """Return the environment with its ranges stretched about the nominal values.

@@ -67,7 +67,7 @@ class Hand(AbstractMemorylessLaw):
         )
 
     @classmethod
-    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+    def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:
         """Yield that its mass moves with the contact."""
         yield Assumption.create("tissue.hand", environment=environment)
 

@@ -112,10 +112,10 @@ class KelvinBoltzmann(AbstractLinearLaw):
             yield cls.from_eta(eta1, (eta1 + arm) * tau, tau)
 
     @classmethod
-    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+    def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:
         """Yield assumptions on the damper at a switch, and without contact."""
         yield Assumption.create("memory.damper", environment=environment)
-        if not alone:
+        if not is_only:
             yield Assumption.create("memory.creeps", environment=environment)
 
     @property

@@ -219,8 +219,8 @@ class AbstractLinearLaw(AbstractContactLaw):
         b = Fraction(getattr(self, self.beside)) if self.beside else ZERO
         force, rates = [b, k], [[ONE, ZERO]]
         if self.memory_rates is not None:
-            decays, follows = self.memory_rates
-            force, rates = [b, k, -k], [[ONE, ZERO, ZERO], [ZERO, follows, -decays - follows]]
+            decays, follow_rate = self.memory_rates
+            force, rates = [b, k, -k], [[ONE, ZERO, ZERO], [ZERO, follow_rate, -decays - follow_rate]]
         velocity, *states = coordinates(1 + len(self.states))
         if self.react(velocity, states) != (force, rates):
             raise AssemblyError(
@@ -239,14 +239,14 @@ class AbstractLinearLaw(AbstractContactLaw):
         return None
 
     @classmethod
-    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+    def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:
         """Yield the assumptions on an environment with memory or mass.
 
         `alone`: no other environment is touched.
         """
         if cls.remembers:
             yield Assumption.create("memory.kept", environment=environment, states=cls.states)
-            if not alone:
+            if not is_only:
                 yield Assumption.create("memory.free", environment=environment)
 
     @property
@@ -283,7 +283,7 @@ class AbstractLinearLaw(AbstractContactLaw):
     def texts(self, unit: Callable[[str], str] = str) -> tuple[str, ...]:
         """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
         parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
-        return tuple(f"{name} = {float(v):.6g} {unit(said)}" for name, v, said in parts if v)
+        return tuple(f"{name} = {float(v):.6g} {unit(unit_text)}" for name, v, unit_text in parts if v)
 
 
 @dataclass(frozen=True)
@@ -294,8 +294,8 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
         """Return the derivatives by the logarithms of the parameters, shape (n, p)."""
         import numpy as np
 
-        each = zip(self.values, motion.derivatives, strict=False)
-        return np.column_stack([value * part for value, part in each])
+        pairs = zip(self.values, motion.derivatives, strict=False)
+        return np.column_stack([value * part for value, part in pairs])
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -79,7 +79,7 @@ class Maxwell(AbstractLinearLaw):
             yield cls(k, k * tau)
 
     @classmethod
-    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+    def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:
         """Yield the assumption on the deflection, which is no state."""
         yield Assumption.create("memory.maxwell", environment=environment)
 

@@ -75,6 +75,6 @@ class Motion:
 
     def moved(self, shift: float) -> Motion:
         """Return the motion with its deflection counted from so much further; velocities stay."""
-        moved = Motion(self.time, self.deflection - shift)
-        vars(moved)["velocity"] = self.velocity
-        return moved
+        motion = Motion(self.time, self.deflection - shift)
+        vars(motion)["velocity"] = self.velocity
+        return motion

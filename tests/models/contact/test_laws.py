@@ -180,7 +180,7 @@ def test_exact_parameters_stay_exact(law):
 
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
 def test_what_remembers_says_what_is_kept(law):
-    alone = sentences(law.assumptions("nose", alone=True))
+    alone = sentences(law.assumptions("nose", is_only=True))
     assert bool(alone) == law.remembers
     assert all("nose" in text for text in alone)
 
@@ -191,6 +191,6 @@ def test_a_memory_is_spoken_of_even_if_its_law_has_no_words_of_its_own():
         states = ("delta [rad]", "stretch [rad]")
 
     kept = "nose keeps delta [rad] and stretch [rad] at a switch and when the parameters change."
-    assert sentences(Remembering.assumptions("nose", alone=True)) == (kept,)
-    (_, free) = sentences(Remembering.assumptions("nose", alone=False))
+    assert sentences(Remembering.assumptions("nose", is_only=True)) == (kept,)
+    (_, free) = sentences(Remembering.assumptions("nose", is_only=False))
     assert "nose is free of force" in free

@@ -113,7 +113,7 @@ def _largest_force(
     whole = {name: law for name, law in laws.items() if law is not None}
     choices = _choices(designed, system, found, rng, runs)
     offset = rng.uniform(-1, 1, runs) * np.deg2rad(LARGEST_ANGLE) * 0.9
-    frame = StepFrame(design.motion.Kp, design.motion.over(period))
+    frame = StepFrame(design.motion.Kp, design.motion.difference_gain(period))
     law = build_law(frame, whole)
     forces = simulate_single_precision(law, PERIOD, choices, offset, losable=losable)
     return float(np.abs(forces).max())

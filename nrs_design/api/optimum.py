@@ -148,7 +148,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
     return {
         "name": item.name,
         "desired_impedance": item.problem.desired,
-        "environment": item.problem.loop.contact.given(),
+        "environment": item.problem.loop.contact.spec_fields(),
         "stiffness": item.problem.loop.contact.stiffness,
         "Mt": item.Mt,
         "Bt": item.Bt,

@@ -12,7 +12,7 @@ from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.prove import Verification
 from nrs_design.certificates.verify import verify as verify_file
-from nrs_design.models.axis import axis_with
+from nrs_design.models.axis import find_axis
 from nrs_design.pipeline.certification import recorded_certification
 from nrs_design.spec import read_spec
 
@@ -48,7 +48,7 @@ class Recheck(AbstractResult):
         return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
 
     def _axis(self) -> object:
-        return None if self.certificate is None else axis_with(self.certificate.system.states)
+        return None if self.certificate is None else find_axis(self.certificate.system.states)
 
     def _facts(self) -> dict[str, Any]:
         from nrs_design.certificates.units import gain_units

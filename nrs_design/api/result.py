@@ -10,7 +10,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import DesignError
-from nrs_design.models.axis import about
+from nrs_design.models.axis import axis_context
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,13 +50,13 @@ class AbstractResult(ABC):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the facts, plain and in SI: what the command of this name prints by ``--json``."""
-        with about(self._axis()):
+        with axis_context(self._axis()):
             return self._facts()
 
     @property
     def figures(self) -> tuple[str, ...]:
         """Names of its figures."""
-        with about(self._axis()):
+        with axis_context(self._axis()):
             return tuple(name for name, _ in self._drawings())
 
     def plot(self, name: str | None = None, width: str | None = None) -> Figure:
@@ -75,7 +75,7 @@ class AbstractResult(ABC):
 
         if width is not None and width not in WIDTHS:
             raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
-        with about(self._axis()), for_paper(None if width is None else WIDTHS[width]):
+        with axis_context(self._axis()), for_paper(None if width is None else WIDTHS[width]):
             seen = []
             for known, draw in self._drawings():
                 if name in (None, known):
@@ -86,7 +86,7 @@ class AbstractResult(ABC):
         raise DesignError(f"there is no figure {name!r}", remedy=f"figures here: {', '.join(seen)}")
 
     def _table(self) -> list[Sequence[str]]:
-        with about(self._axis()):
+        with axis_context(self._axis()):
             return list(self._rows())
 
     def __repr__(self) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
-from nrs_design.models.axis import axis_with
+from nrs_design.models.axis import find_axis
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.mode import Time
 from nrs_design.spec.faults import Location
@@ -91,7 +91,7 @@ def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> tuple[str
 
 def _effort(certificate: Certificate) -> str:
     """Return the unit of a force on the axis."""
-    return axis_with(certificate.system.states).unit("N*m")
+    return find_axis(certificate.system.states).unit("N*m")
 
 
 def _decay_rate(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:

@@ -18,10 +18,10 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     # Controllers are slow to load, and a certificate of given matrices has none.
     from nrs_design.controllers.controller_design import units_of
     from nrs_design.loop.assumptions import command_in
-    from nrs_design.models.axis import COMMAND_UNITS, axis_with
+    from nrs_design.models.axis import COMMAND_UNITS, find_axis
 
     system = certificate.system
     command = command_in(system.assumptions)
     if command not in COMMAND_UNITS:
         raise CertificateError(f"it has commands in {quoted(command)}, which no motor takes")
-    return units_of(certificate.gains, command, axis_with(system.states))
+    return units_of(certificate.gains, command, find_axis(system.states))

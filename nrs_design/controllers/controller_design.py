@@ -9,7 +9,7 @@ from fractions import Fraction
 from nrs_design.controllers.laws import LAWS, AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.axis import AxisType
-from nrs_design.models.drive import Takes, taken_in
+from nrs_design.models.drive import CommandInterface, find_interface
 
 # Remedy for modes that share no state.
 SHARED_STATES = "give all impedance controllers a virtual inertia Mt > 0, or none of them"
@@ -48,9 +48,9 @@ class ControllerDesign:
     axis: AxisType = AxisType.ROTARY  # Whose units the gains have
 
     @property
-    def takes(self) -> Takes | None:
+    def takes(self) -> CommandInterface | None:
         """What the robot takes; None for the commands of a motor."""
-        return taken_in(self.command)
+        return find_interface(self.command)
 
     @property
     def contacts(self) -> frozenset[str]:
@@ -62,13 +62,13 @@ class ControllerDesign:
         """Every law by the name of its controller, the motion controller first."""
         return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}
 
-    def with_gains(self, gains: Mapping[str, Mapping[str, Fraction]]) -> ControllerDesign:
+    def replace_gains(self, gains: Mapping[str, Mapping[str, Fraction]]) -> ControllerDesign:
         """Return the design with some other gains, by the names of `laws`."""
         motion = self.motion
         if not motion.absent:
-            motion = motion.of({**motion.gains, **gains.get(motion.name, {})})
+            motion = motion.create({**motion.gains, **gains.get(motion.name, {})})
         controllers = (
-            replace(one, law=one.law.of({**one.law.gains, **gains.get(one.name, {})}))
+            replace(one, law=one.law.create({**one.law.gains, **gains.get(one.name, {})}))
             for one in self.controllers
         )
         return replace(self, motion=motion, controllers=tuple(controllers))
@@ -83,7 +83,7 @@ class ControllerDesign:
         if not is_mixture:
             return laws
         moving = [law for law in laws if law.commands == "velocity"]
-        return moving or [law for law in laws if law.bleeds]
+        return moving or [law for law in laws if law.is_leaky]
 
     def find_odd_states(self, *, mixed: bool) -> str | None:
         """Return the states that laws do not share, as a text, or None.
@@ -93,7 +93,7 @@ class ControllerDesign:
         laws = [controller.law for controller in self.controllers]
         kinds = {(law.commands, law.states) for law in self.leading_laws(is_mixture=mixed)}
         if mixed:
-            kinds |= {(law.commands, law.states) for law in laws if law.states and not law.bleeds}
+            kinds |= {(law.commands, law.states) for law in laws if law.states and not law.is_leaky}
         if len(kinds) <= 1:
             return None
         descriptions = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
@@ -115,8 +115,10 @@ def units_of(
     `command` is the unit of the commands that the motor takes, which the motion gains make.
     """
     units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
-    motion, pd = ProportionalDerivative.units_in(command), ProportionalDerivative.name
+    motion, pd = ProportionalDerivative.command_units(command), ProportionalDerivative.name
     return {
-        name: {gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in gain_names}
+        name: {
+            gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in gain_names
+        }
         for name, gain_names in gains.items()
     }

@@ -12,16 +12,16 @@ from nrs_design.errors import DesignError
 PRECISION, SMALLEST, LIMIT = 24, -149, 128
 
 
-def to_float32(value: Fraction) -> Fraction:
+def round_float32(value: Fraction) -> Fraction:
     """Round to the nearest single-precision number (ties to even), returned exactly.
 
     In rationals throughout: by way of a double it would be rounded twice. Beyond the range of
     single precision it is a `DesignError`.
     """
-    return _rounded(value, round)
+    return _round(value, round)
 
 
-def _rounded(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
+def _round(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
     """Return a neighbor of a value in single precision; `whole` picks which."""
     exponent = value.numerator.bit_length() - value.denominator.bit_length()
     if abs(value) < Fraction(2) ** exponent:
@@ -38,7 +38,7 @@ def _rounded(value: Fraction, whole: Callable[[Fraction], int]) -> Fraction:
 
 def float32_not_above(value: Fraction) -> Fraction:
     """Return the largest single-precision number that is not above a value."""
-    return _rounded(value, math.floor)
+    return _round(value, math.floor)
 
 
 def float32_not_below(value: Fraction) -> Fraction:
@@ -49,7 +49,7 @@ def float32_not_below(value: Fraction) -> Fraction:
 def is_float32(value: Fraction) -> bool:
     """Tell whether a value is a single-precision number."""
     try:
-        return to_float32(value) == value
+        return round_float32(value) == value
     except DesignError:
         return False
 

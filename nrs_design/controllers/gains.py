@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
+from nrs_design.controllers.float32 import exact_decimal, is_float32, round_float32
 from nrs_design.controllers.laws import LAWS, NO_MOTION, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
 from nrs_design.controllers.taylor import exponential_between
@@ -60,7 +60,7 @@ def design_from_gains(
     )
     sensor = build_sensor(spec.sensor)
     found = ControllerDesign(motion, controllers, sensor, spec.command, spec.axis)
-    return found.with_gains(numbers)
+    return found.replace_gains(numbers)
 
 
 def free_gains(spec: InteractionDesignSpec) -> Iterator[tuple[str, str]]:
@@ -79,7 +79,7 @@ def steering_goals(spec: Spec) -> tuple[str, ...]:
     return tuple(key for key in STEERING if key in given) if any(free_gains(spec)) else ()
 
 
-def with_chosen(
+def apply_free_gains(
     spec: InteractionDesignSpec,
     design: ControllerDesign,
     gains: Mapping[str, Mapping[str, str]],
@@ -95,13 +95,13 @@ def with_chosen(
     for name, free in spec.design.free.items():
         for gain, factors in free.given():
             _check_near(name, gain, laws[name].gains[gain], factors, found[name][gain])
-    return design.with_gains(found)
+    return design.replace_gains(found)
 
 
 def _check_near(
     name: str, gain: str, nominal: Fraction, factors: FactorBounds, value: Fraction
 ) -> None:
-    low, high = (to_float32(factor * nominal) for factor in (factors.min, factors.max))
+    low, high = (round_float32(factor * nominal) for factor in (factors.min, factors.max))
     if not low <= value <= high:
         raise CertificateError(f"gain {gain} of {name} is outside its bounds")
 
@@ -114,7 +114,7 @@ def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
     found = {name: dict(own) for name, own in gains.items()}
     for name, free in spec.design.free.items():
         for gain, factors in free.given():
-            given = _given(spec, name, gain)
+            given = _spec_gain(spec, name, gain)
             if given is None:
                 continue
             _check_near(name, gain, given, factors, found[name].get(gain, given))
@@ -123,24 +123,24 @@ def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
     zero = None if loop is None or loop.derivative_gain is not None else loop.zero
     if MOTION in spec.design.free and zero is not None:
         # The root locus gives Kd, and the zero gives Kp by it: the spec gives neither.
-        found[MOTION]["Kp"] = to_float32(found[MOTION]["Kd"] * zero.exact)
+        found[MOTION]["Kp"] = round_float32(found[MOTION]["Kd"] * zero.exact)
     return found
 
 
-def _given(spec: InteractionDesignSpec, name: str, gain: str) -> Fraction | None:
+def _spec_gain(spec: InteractionDesignSpec, name: str, gain: str) -> Fraction | None:
     """Return the gain of a controller, or of the motion loop, that the spec gives, if it does."""
     if name == MOTION:
         loop = spec.motion_loop
         if loop is None or loop.derivative_gain is None:
             return None
-        Kd = to_float32(loop.derivative_gain.exact)
+        Kd = round_float32(loop.derivative_gain.exact)
         if gain == "Kd":
             return Kd
-        return None if loop.zero is None else to_float32(Kd * loop.zero.exact)
+        return None if loop.zero is None else round_float32(Kd * loop.zero.exact)
     given = spec.controllers[name]
     value = getattr(given, LAWS[given.type].fixed.get(gain, gain))
     value = value.min if isinstance(value, GainSpec) else value
-    return None if value is None else to_float32(exact_number(value))
+    return None if value is None else round_float32(exact_number(value))
 
 
 def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivative:
@@ -148,32 +148,32 @@ def _motion(spec: InteractionDesignSpec, gains: Numbers) -> ProportionalDerivati
     loop = spec.motion_loop
     if loop is None:
         return NO_MOTION
-    motion = ProportionalDerivative.of(gains[MOTION])
+    motion = ProportionalDerivative.create(gains[MOTION])
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise CertificateError("the gains of the motion controller are not positive")
     given, zero = loop.derivative_gain, loop.zero
-    fixed = given is None or motion.Kd == to_float32(given.exact)
-    if not fixed or (zero is not None and motion.Kp != to_float32(motion.Kd * zero.exact)):
+    fixed = given is None or motion.Kd == round_float32(given.exact)
+    if not fixed or (zero is not None and motion.Kp != round_float32(motion.Kd * zero.exact)):
         raise CertificateError("the gains of the motion controller are not what the spec fixes")
     return motion
 
 
 def idle_decay(idle: IdleStatesSpec) -> Fraction:
     """Return the rate in 1/s that the robot holds: a single-precision number, as gains are."""
-    return to_float32(idle.decay.exact)
+    return round_float32(idle.decay.exact)
 
 
 def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
     """Return the share of idle states after a period in s: a single-precision number."""
-    return to_float32(exponential_between(-idle_decay(idle) * period)[0])
+    return round_float32(exponential_between(-idle_decay(idle) * period)[0])
 
 
 def _controller(name: str, spec: ControllerSpec, values: Mapping[str, Fraction]) -> Controller:
     for gain, bounds in spec.gains().items():
-        low, high = to_float32(bounds.min.exact), to_float32(bounds.max.exact)
+        low, high = round_float32(bounds.min.exact), round_float32(bounds.max.exact)
         if not low <= values[gain] <= high:
             raise CertificateError(f"gain {gain} of controller {name} is outside its bounds")
-    law = LAWS[spec.type].of(values)
+    law = LAWS[spec.type].create(values)
     if fault := law.find_fault(spec):
         raise CertificateError(f"controller {name}: {fault}")
     return Controller(name, law, spec.environment, contact_names(spec.contacts))
@@ -185,7 +185,7 @@ def _numbers(
     """Read the gains of a controller, or of the motion loop."""
     expected: tuple[str, ...] = () if spec.motion_loop is None else ("Kp", "Kd")
     if name != MOTION:
-        expected = LAWS[spec.controllers[name].type].gains_in(spec.controllers[name])
+        expected = LAWS[spec.controllers[name].type].gain_names(spec.controllers[name])
     if set(texts) != set(expected):
         mismatch = f"are not {', '.join(expected)}" if expected else "should be no gains at all"
         raise CertificateError(f"the gains of {name} {mismatch}")

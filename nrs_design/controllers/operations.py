@@ -24,7 +24,7 @@ V = TypeVar("V")
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
 # Kinds with a coefficient for the left operand.
-WITH_COEFFICIENT: frozenset[Kind] = frozenset({"multiply", "saturate"})
+COEFFICIENT_KINDS: frozenset[Kind] = frozenset({"multiply", "saturate"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,22 +53,22 @@ class Coefficient:
     symbols: tuple[str, ...] = ()  # Symbols by mode, if not `symbol`
 
     @property
-    def by_mode(self) -> bool:
+    def differs_by_mode(self) -> bool:
         """Whether each mode has a number of its own."""
         return len(self.values) > 1
 
-    def of(self, mode: int) -> Fraction:
+    def number(self, mode: int) -> Fraction:
         """Return its value in a mode."""
-        return self.values[mode if self.by_mode else 0]
+        return self.values[mode if self.differs_by_mode else 0]
 
-    def symbol_in(self, mode: int) -> str:
+    def mode_symbol(self, mode: int) -> str:
         """Return the name in terms of a mode."""
         return self.symbols[mode] if self.symbols else self.symbol
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient."""
+    """One operation; of those in `COEFFICIENT_KINDS` the left operand is a coefficient."""
 
     name: str  # Name of the result
     # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
@@ -103,7 +103,7 @@ class StepLaw:
         """Refuse a list that does not fit together."""
         known, constants = {value.name for value in self.values}, {*self.coefficient}
         for operation in self.operations:
-            lefts = constants if operation.kind in WITH_COEFFICIENT else known
+            lefts = constants if operation.kind in COEFFICIENT_KINDS else known
             if operation.left not in lefts or operation.right not in known:
                 raise ValueError(f"{operation.name} is computed from what is not there")
             known.add(operation.name)

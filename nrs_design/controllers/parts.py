@@ -14,15 +14,15 @@ from fractions import Fraction
 from nrs_design.controllers.operations import Operation, Value
 
 # Limit by default: no robot gets there, and nothing overflows.
-BEYOND = Fraction(1_000_000)
+DEFAULT_LIMIT = Fraction(1_000_000)
 # The operand that stands for the force: the sample, or the last lag of its filter.
 FORCE = "force"
 # Gain from the force to the torque that a law subtracts.
 FORCE_GAIN = "Kf_torque"
 # Inputs: velocity of the hand, commanded position, wanted force.
-HAND = Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands")
-POSITION = Value("position", "X", "rad", BEYOND, "commanded position", "angle")
-WANTED = Value("wanted_torque", "Fd", "N*m", BEYOND, "wanted torque of the contact")
+HAND = Value("velocity_command", "v", "rad/s", DEFAULT_LIMIT, "velocity that the hand commands")
+POSITION = Value("position", "X", "rad", DEFAULT_LIMIT, "commanded position", "angle")
+TARGET_TORQUE = Value("wanted_torque", "Fd", "N*m", DEFAULT_LIMIT, "wanted torque of the contact")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +54,11 @@ class StepPart:
     states: tuple[Value, ...] = ()
     # Before the error of the motion loop, and the result that is added to the commanded position;
     # the sum with the results of the parts before this one is called `total`.
-    before: tuple[Operation, ...] = ()
+    reference_operations: tuple[Operation, ...] = ()
     adds: str = ""
     total: str = ""
     # After the command, and the result that follows each state.
-    after: tuple[Operation, ...] = ()
+    state_operations: tuple[Operation, ...] = ()
     following: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -66,8 +66,8 @@ class StepPart:
 PROPORTIONAL = StepPart(
     "proportional",
     (StepGain("Kf", "Kp", "rad/(N*m)"),),
-    (POSITION, WANTED),
-    before=(
+    (POSITION, TARGET_TORQUE),
+    reference_operations=(
         Operation("lack", "subtract", "wanted_torque", FORCE),
         Operation("correction", "multiply", "Kf", "lack"),
     ),

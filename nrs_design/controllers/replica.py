@@ -47,7 +47,7 @@ class StepProgram:
         limits = [np.float32(float(value.limit)) for value in law.values]
         self._limits = [(-limit, limit) for limit in limits]
         self._numbers = [
-            [np.float32(float(c.of(mode))) for c in law.coefficients]
+            [np.float32(float(c.number(mode))) for c in law.coefficients]
             for mode in range(len(law.modes))
         ]
         # All values of a step are in one list, in this order.

@@ -19,7 +19,7 @@ from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.sensor import Surface
 
 # A sample counts as judged if a stiffness beyond the range by this factor had been reported.
-JUDGED = Fraction(3, 2)
+DETECTION_FACTOR = Fraction(3, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Sector:
     reading: Fraction  # Largest error of the angle as it is read, in rad
     surface: Surface  # When the surface may be elsewhere
     surface_speed: Fraction  # Largest speed of the surface in rad/s
-    kept: bool  # Contact is never lost, so the tissue pulls as well
+    contact_maintained: bool  # Contact is never lost, so the tissue pulls as well
     speed: Fraction | None  # Largest speed of the joint in rad/s; None if unknown
 
     def noise(self) -> Fraction:
@@ -58,9 +58,9 @@ class Sector:
             gain, lever = 1 / k - 1 / self.low, 1 / k - 1 / self.high
         # The other sample is the last one in the air where that tells where the surface is, and the
         # first in which contact is certain otherwise.
-        if factor > 1 and self.surface != "touched" and not self.kept:
+        if factor > 1 and self.surface != "touched" and not self.contact_maintained:
             return (self.noise() + rounding + travel) / gain
-        minimum_torque = k * travel + (0 if self.kept else 2 * self.torque_noise)
+        minimum_torque = k * travel + (0 if self.contact_maintained else 2 * self.torque_noise)
         return (self.noise() + rounding + minimum_torque * lever) / gain
 
 
@@ -78,20 +78,26 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
     if not environments:
         return "no controller touches anything"
     for e in environments:
-        if e.law.remembers or e.law.has_mass or e.preloaded:
+        if e.law.has_memory or e.law.has_mass or e.preloaded:
             return f"the torque of {e.name} does not follow from angle and speed of the moment"
     damping = max(e.load[1].high for e in environments)
     speed = spec.monitoring.speed
     if damping and speed is None:
         return "a tissue has damping, and no `monitoring: speed` bounds what that adds"
-    return _sector(spec, environments, damping * (Fraction(0) if speed is None else speed.not_below))
+    return _sector(
+        spec, environments, damping * (Fraction(0) if speed is None else speed.not_below)
+    )
 
 
-def _sector(spec: InteractionDesignSpec, environments: list[Environment], viscous: Fraction) -> Sector:
+def _sector(
+    spec: InteractionDesignSpec, environments: list[Environment], viscous: Fraction
+) -> Sector:
     """Return the sector of touched environments, with the torque of damping in N m."""
     monitoring = spec.monitoring
     assert monitoring is not None
-    speed, skew, surface = map(_not_below, (monitoring.speed, monitoring.skew, monitoring.surface_speed))
+    speed, skew, surface = map(
+        _not_below, (monitoring.speed, monitoring.skew, monitoring.surface_speed)
+    )
     # The surface moves on while the sample of the torque grows old.
     oldest = Fraction(0) if spec.sampling is None else spec.sampling.oldest
     reading = monitoring.angle_noise.not_below
@@ -103,7 +109,7 @@ def _sector(spec: InteractionDesignSpec, environments: list[Environment], viscou
         reading=reading,
         surface=monitoring.surface,
         surface_speed=surface,
-        kept=spec.contact == "kept",
+        contact_maintained=spec.contact == "kept",
         speed=None if monitoring.speed is None else speed,
     )
 

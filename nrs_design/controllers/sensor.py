@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import comb
 
-from nrs_design.controllers.float32 import exact_decimal, to_float32
+from nrs_design.controllers.float32 import exact_decimal, round_float32
 from nrs_design.controllers.taylor import exponential_between
 from nrs_design.errors import DesignError
 from nrs_design.models.axis import AxisType
@@ -53,14 +53,14 @@ class LowPass:
 
         A `DesignError` if a step forgets nothing, so that the force never arrives.
         """
-        factor = to_float32(exponential_between(-self.pole * period)[0])
+        factor = round_float32(exponential_between(-self.pole * period)[0])
         if factor == 1:
             raise DesignError(
                 "the filter of the force is lost in single precision: a step keeps all it holds",
                 remedy="raise its cutoff, or sample with a longer period",
                 at=("sensor", "filter", "cutoff"),
             )
-        return DiscreteLowPass(self.order, factor, to_float32(1 - factor))
+        return DiscreteLowPass(self.order, factor, round_float32(1 - factor))
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,5 +128,5 @@ def build_sensor(spec: SensorSpec | None) -> Sensor:
         errors["half a step of resolution"] = spec.resolution.exact / 2
     low_pass = None
     if spec.filter is not None:
-        low_pass = LowPass(spec.filter.order, to_float32(spec.filter.cutoff.not_below))
+        low_pass = LowPass(spec.filter.order, round_float32(spec.filter.cutoff.not_below))
     return Sensor(errors, low_pass)

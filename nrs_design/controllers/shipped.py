@@ -9,7 +9,7 @@ from nrs_design.controllers.controller_design import SHARED_STATES, ControllerDe
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.parts import DEFAULT_LIMIT
 from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
@@ -33,7 +33,9 @@ def shipped_law(
     method = "exact" if spec.sampling is None else spec.sampling.admittance
     laws = {c.name: c.law.discretize(outer, method) for c in design.controllers}
     low_pass = None if filter_ is None else filter_.discretize(outer)
-    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec), design.takes)
+    frame = StepFrame(
+        motion.Kp, motion.difference_gain(period), low_pass, step_limits(spec), design.takes
+    )
     _check_states(spec, design)
     idle = None
     if spec.idle_states is not None:
@@ -41,9 +43,9 @@ def shipped_law(
         idle = Fraction(0) if spec.idle_states.reset else idle_share(spec.idle_states, period)
     law = build_law(frame, laws, idle)
     check_range(law)
-    law = _with_units(law, design.axis, design.command)
+    law = _convert_units(law, design.axis, design.command)
     logic = spec.mode_logic
-    return replace(law, logic=None if logic is None else StepLogic.of(logic, law.modes, period))
+    return replace(law, logic=None if logic is None else StepLogic.create(logic, law.modes, period))
 
 
 def _check_states(spec: InteractionDesignSpec, design: ControllerDesign) -> None:
@@ -60,25 +62,25 @@ def _check_states(spec: InteractionDesignSpec, design: ControllerDesign) -> None
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
 
 
-def _with_units(law: StepLaw, axis: AxisType, command: str) -> StepLaw:
+def _convert_units(law: StepLaw, axis: AxisType, command: str) -> StepLaw:
     """Name the units of an axis and of what the motor takes, where the law says rad and rpm."""
 
-    def named(unit: str) -> str:
+    def convert(unit: str) -> str:
         unit = axis.unit(unit)
         return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
     return replace(
         law,
-        inputs=tuple(replace(one, unit=named(one.unit)) for one in law.inputs),
-        states=tuple(replace(one, unit=named(one.unit)) for one in law.states),
-        coefficients=tuple(replace(one, unit=named(one.unit)) for one in law.coefficients),
-        units={name: named(unit) for name, unit in law.units.items()},
+        inputs=tuple(replace(one, unit=convert(one.unit)) for one in law.inputs),
+        states=tuple(replace(one, unit=convert(one.unit)) for one in law.states),
+        coefficients=tuple(replace(one, unit=convert(one.unit)) for one in law.coefficients),
+        units={name: convert(unit) for name, unit in law.units.items()},
     )
 
 
 def step_limits(spec: InteractionDesignSpec) -> StepLimits:
     """Return the limits of a spec in single precision, none of them above what is written."""
-    angle, command = BEYOND, spec.limits.command
+    angle, command = DEFAULT_LIMIT, spec.limits.command
     if spec.disturbances is not None and spec.disturbances.largest_angle is not None:
         angle = float32_not_above(spec.disturbances.largest_angle.not_above)
     return StepLimits(

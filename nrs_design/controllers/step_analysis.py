@@ -97,12 +97,12 @@ def _terms(
         return right
     if operation.kind == "multiply":
         coefficient = law.coefficient[operation.left]
-        factor = coefficient.of(mode)
+        factor = coefficient.number(mode)
         if factor in (0, 1):
             # Both products are exact.
             return right if factor else ()
         factor = numbers.get(operation.left, factor)
-        return tuple(term.times(factor, f"{coefficient.symbol_in(mode)} ", 1) for term in right)
+        return tuple(term.times(factor, f"{coefficient.mode_symbol(mode)} ", 1) for term in right)
     add, left = operation.kind == "add", terms[operation.left]
     sign = ONE if add else -ONE
     if not left or not right:
@@ -113,7 +113,9 @@ def _terms(
     added = int(not is_angle)
     if any(term.roundings for term in summands):
         rounds_again = is_angle and operation.name not in law.following.values()
-        return tuple(t.times(ONE, "", int(t.roundings > 0) if rounds_again else added) for t in summands)
+        return tuple(
+            t.times(ONE, "", int(t.roundings > 0) if rounds_again else added) for t in summands
+        )
     # A sum of exact numbers is off in proportion to itself.
     names = [" + ".join(term.name for term in side) for side in (left, right)]
     name = operation.symbol or f"({names[0]} {'+' if add else '-'} {names[1]})"
@@ -150,7 +152,9 @@ def counted_terms(
     with them, and as a whole. So what is subtracted exactly needs no rounding of its own.
     """
     found: dict[str, dict[str, int]] = {}
-    symbols = {o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"}
+    symbols = {
+        o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"
+    }
     for name, terms in rounded_terms(law, mode, given).items():
         counts = {t.name: t.roundings for t in terms if t.roundings and any(t.form)}
         if name in symbols and symbols[name] not in counts:

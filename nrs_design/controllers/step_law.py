@@ -21,9 +21,9 @@ from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.parts import BEYOND, FORCE, FORCE_GAIN, HAND, POSITION, StepPart
+from nrs_design.controllers.parts import DEFAULT_LIMIT, FORCE, FORCE_GAIN, HAND, POSITION, StepPart
 from nrs_design.controllers.sensor import DiscreteLowPass
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 
 UNITS = {"command": "rpm"}
 # Name of the limit on the integral of the force error.
@@ -36,15 +36,15 @@ class StepLimits:
     """Limits of inputs and of signals that saturate; single-precision numbers."""
 
     # Joint angle and reference beyond it are refused, rad.
-    angle: Fraction = BEYOND
+    angle: Fraction = DEFAULT_LIMIT
     # The velocity command saturates there, rad/s.
-    velocity: Fraction = BEYOND
+    velocity: Fraction = DEFAULT_LIMIT
     # The speed command of the motor saturates there, rpm; None for nowhere.
     command: Fraction | None = None
     # The integral of the force error is cut off there, rad; None for nowhere.
     integral: Fraction | None = None
 
-    def within(self, value: Value) -> Value:
+    def apply_limit(self, value: Value) -> Value:
         """Return a value, limited by the largest angle if its unit is rad."""
         return replace(value, limit=self.angle) if value.unit == "rad" else value
 
@@ -61,7 +61,7 @@ class StepFrame:
     # By default nothing saturates, and inputs are refused where no robot gets.
     limits: StepLimits = StepLimits()
     # Command interface of a robot with its own motion controller, or with torques.
-    takes: Takes | None = None
+    interface: CommandInterface | None = None
 
     @property
     def order(self) -> int:
@@ -71,12 +71,12 @@ class StepFrame:
     @property
     def streams(self) -> bool:
         """Whether the robot takes velocities or positions, and closes the motion loop."""
-        return self.takes in (Takes.VELOCITY, Takes.POSITION)
+        return self.interface in (CommandInterface.VELOCITY, CommandInterface.POSITION)
 
     @property
     def numbers(self) -> dict[str, Fraction]:
         """The numbers of motion controller and filter, by the names of their coefficients."""
-        numbers = {} if self.takes else {"Kp": self.Kp, "Kd_over_T": self.D}
+        numbers = {} if self.interface else {"Kp": self.Kp, "Kd_over_T": self.D}
         return numbers | (
             {} if self.low_pass is None else {"p": self.low_pass.p, "q": self.low_pass.q}
         )
@@ -94,7 +94,9 @@ def step_parts(laws: Collection[DiscreteLaw]) -> tuple[StepPart, ...]:
     position_laws = [law for law in laws if law.law.commands == "position"]
     ordered = (*position_laws, *(law for law in laws if law not in position_laws))
     names = {name for law in laws for name in law.numbers}
-    parts = (part for law in ordered for part in law.law.parts(names, has_position=bool(position_laws)))
+    parts = (
+        part for law in ordered for part in law.law.parts(names, has_position=bool(position_laws))
+    )
     return tuple({part.name: part for part in parts}.values())
 
 
@@ -129,7 +131,7 @@ def build_law(
     sample, or the reference that they move by it. `idle` as for `numbers_in_force`.
     """
     limits, parts = frame.limits, step_parts(laws.values())
-    if frame.takes is Takes.VELOCITY:
+    if frame.interface is CommandInterface.VELOCITY:
         parts = tuple(map(_streamed, parts))
     if limits.integral is not None:
         parts = tuple(map(_clamped, parts))
@@ -142,7 +144,7 @@ def build_law(
         "error_before",
         "e before",
         "rad",
-        2 * (BEYOND if placed else limits.angle),
+        2 * (DEFAULT_LIMIT if placed else limits.angle),
         "error of motion a sample ago",
         stored="e before [rad]",
     )
@@ -155,25 +157,29 @@ def build_law(
     referred = tuple(_referred(parts, placed=placed))
     reference_name = "reference" if not placed or referred else "position"
     takes_force = any(gain.name == FORCE_GAIN for part in parts for gain in part.gains)
-    motion = () if frame.streams else motion_operations(limits, reference_name, takes_force=takes_force)
+    motion = (
+        () if frame.streams else motion_operations(limits, reference_name, takes_force=takes_force)
+    )
     operations = (
         *_filtered(frame.order),
         *referred,
         *motion,
-        *(operation for part in reversed(parts) for operation in part.after),
+        *(operation for part in reversed(parts) for operation in part.state_operations),
     )
     force = {FORCE: _lagged(frame.order)}
     # A robot that takes velocities is asked for its position by a spring alone.
-    takes_angle = frame.takes is not Takes.VELOCITY or any(o.left == "angle" for o in operations)
+    takes_angle = frame.interface is not CommandInterface.VELOCITY or any(
+        o.left == "angle" for o in operations
+    )
     return StepLaw(
         tuple(laws),
-        (*_measured(limits)[not takes_angle :], *map(limits.within, inputs.values())),
+        (*_measured(limits)[not takes_angle :], *map(limits.apply_limit, inputs.values())),
         (
-            *map(limits.within, places),
+            *map(limits.apply_limit, places),
             *(() if frame.streams else (error,)),
-            *(limits.within(state) for state in states if state.stored),
+            *(limits.apply_limit(state) for state in states if state.stored),
             *_lags(frame.order),
-            *(limits.within(state) for state in states if not state.stored),
+            *(limits.apply_limit(state) for state in states if not state.stored),
         ),
         (
             *frame.coefficients,
@@ -193,7 +199,11 @@ def build_law(
 def _command(frame: StepFrame, position_name: str, *, takes_force: bool) -> str:
     """Return the name of the output; `placed`: the position input of laws, or empty."""
     if frame.streams:
-        return "relative" if frame.takes is Takes.VELOCITY else position_name or "next_reference"
+        return (
+            "relative"
+            if frame.interface is CommandInterface.VELOCITY
+            else position_name or "next_reference"
+        )
     if frame.limits.command is not None:
         return "limited_command"
     return "eased" if takes_force else "command"
@@ -214,14 +224,14 @@ def _streamed(part: StepPart) -> StepPart:
     }
     after = (
         replace(operation, **changes.get(operation.name, {}))
-        for operation in part.after
+        for operation in part.state_operations
         if operation.name not in ("moved", "next_reference")
     )
     return replace(
         part,
         place=None,
         gains=tuple(gain for gain in part.gains if sprung or gain.name != "T"),
-        after=tuple(after),
+        state_operations=tuple(after),
         following={name: made for name, made in part.following.items() if name != "reference"},
     )
 
@@ -231,10 +241,10 @@ def _clamped(part: StepPart) -> StepPart:
     made = part.following.get("integral")
     if made is None:
         return part
-    *before, last = part.after
+    *before, last = part.state_operations
     summed = replace(last, name="summed_integral")
     limit = Operation(made, "saturate", INTEGRAL_LIMIT, summed.name)
-    return replace(part, after=(*before, summed, limit))
+    return replace(part, state_operations=(*before, summed, limit))
 
 
 def _coefficients(
@@ -256,18 +266,18 @@ def _coefficients(
 
 
 def _measured(limits: StepLimits) -> tuple[Value, ...]:
-    angle = Value("angle", "theta", "rad", BEYOND, "measured position of the joint", "angle")
+    angle = Value("angle", "theta", "rad", DEFAULT_LIMIT, "measured position of the joint", "angle")
     torque = Value(
-        "torque", "F", "N*m", BEYOND, "measured torque, or force, of the contact", "term"
+        "torque", "F", "N*m", DEFAULT_LIMIT, "measured torque, or force, of the contact", "term"
     )
-    return limits.within(angle), torque
+    return limits.apply_limit(angle), torque
 
 
 def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]:
     """Yield the sum of the commanded position and of all parts."""
     total = ""
     for part in parts:
-        yield from part.before
+        yield from part.reference_operations
         if part.adds and total:
             yield Operation(part.total, "add", part.adds, total)
         total = part.total if part.adds and total else part.adds or total
@@ -300,7 +310,7 @@ def _lags(order: int) -> Iterator[Value]:
     for i in range(1, order + 1):
         meaning = f"torque behind lag {i} of the filter"
         stored = f"filtered {i} before [N*m]"
-        yield Value(f"filtered_{i}", f"x{i}", "N*m", BEYOND, meaning, stored=stored)
+        yield Value(f"filtered_{i}", f"x{i}", "N*m", DEFAULT_LIMIT, meaning, stored=stored)
 
 
 def _lagged(order: int) -> str:

@@ -26,7 +26,7 @@ class SignalBound:
     """One side of a threshold."""
 
     signal: str  # ``command`` or ``torque``, positive towards the tissue
-    above: bool  # True for a least value, false for a largest value
+    is_lower: bool  # True for a least value, false for a largest value
     threshold: Fraction  # A single-precision number in rad/s or N m
 
 
@@ -46,10 +46,10 @@ class StepLogic:
     start: int  # Mode at first
     signals: tuple[str, ...]  # Names of the signals
     switches: tuple[StepSwitch, ...]  # The first that may be made is
-    stays: tuple[int, ...]  # For how many samples each mode is held
+    hold_samples: tuple[int, ...]  # For how many samples each mode is held
 
     @classmethod
-    def of(cls, logic: ThresholdLogicSpec, modes: Sequence[str], period: Fraction) -> Self:
+    def create(cls, logic: ThresholdLogicSpec, modes: Sequence[str], period: Fraction) -> Self:
         """Return the logic of a spec in samples of a period in s.
 
         A `DesignError` if a threshold is beyond single precision, or a time too long to be counted.
@@ -76,9 +76,9 @@ class StepLogic:
         Before it, `mode` has been active for `held` samples. Signals are single-precision numbers;
         one that is no number is no reason to switch.
         """
-        if mode >= len(self.stays):
+        if mode >= len(self.hold_samples):
             return self.start, 1
-        if count >= self.stays[mode]:
+        if count >= self.hold_samples[mode]:
             for switch in self.switches:
                 if switch.source == mode and all(_holds(b, signals) for b in switch.bounds):
                     return switch.target, 1
@@ -87,7 +87,7 @@ class StepLogic:
 
 def _holds(bound: SignalBound, signals: Mapping[str, float]) -> bool:
     value, threshold = signals[bound.signal], float(bound.threshold)
-    return value >= threshold if bound.above else value <= threshold
+    return value >= threshold if bound.is_lower else value <= threshold
 
 
 def _switch(switch: LogicSwitchSpec, modes: Sequence[str]) -> StepSwitch:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.float32 import round_float32, round_significant
 from nrs_design.controllers.laws import NO_MOTION, ProportionalDerivative
 from nrs_design.design.doubts import doubt_same
 from nrs_design.design.laws import LAW_DESIGNS
@@ -70,8 +70,8 @@ def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
     gain = given.derivative_gain
     Kd = round_significant(wanted.derivative_gain, digits) if gain is None else gain.exact
     zero = round_significant(wanted.zero, digits) if given.zero is None else given.zero.exact
-    shipped = to_float32(Kd)
-    motion = ProportionalDerivative(Kp=to_float32(shipped * zero), Kd=shipped)
+    shipped = round_float32(Kd)
+    motion = ProportionalDerivative(Kp=round_float32(shipped * zero), Kd=shipped)
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise DesignError(
             "a gain of the motion controller is zero in single precision",

@@ -282,7 +282,7 @@ class Requirement(AbstractRequirement):
 
     def family(self, corner: ContactCorner) -> LoopFamily:
         """Return the loops of all admittances in a contact, made once."""
-        key = corner.contact.at_stiffness(Fraction(1)), corner.Kt, corner.place
+        key = corner.contact.replace_stiffness(Fraction(1)), corner.Kt, corner.place
         assert self.axis is not None, "without an axis there are no loops"
         if key not in self._families:
             self._families[key] = LoopFamily(self.axis, *key)

@@ -23,7 +23,7 @@ from nrs_design.design.laws.law import Task
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import controllable_form
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.spec import InteractionDesignSpec
@@ -77,7 +77,7 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
         ),
         _of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
         tuple(
-            _controller_part(item, measured=design.takes is Takes.VELOCITY)
+            _controller_part(item, measured=design.takes is CommandInterface.VELOCITY)
             for item in design.controllers
         ),
         None if low_pass is None else _filter_part(low_pass),

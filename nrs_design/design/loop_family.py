@@ -136,7 +136,7 @@ def _basis(family: LoopFamily, *, inert: bool) -> dict[str, FloatArray]:
     """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""
     made = [
         family.axis.admittances(
-            family.contact.at_stiffness(Fraction(k)), family.spring, family.place, inert=inert
+            family.contact.replace_stiffness(Fraction(k)), family.spring, family.place, inert=inert
         )
         for k in (1, 2)
     ]

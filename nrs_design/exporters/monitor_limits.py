@@ -18,7 +18,7 @@ from operator import mul
 
 import numpy as np
 
-from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
+from nrs_design.controllers.float32 import float32_not_above, float32_not_below, round_float32
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.controllers.taylor import exponential_between
@@ -63,7 +63,7 @@ def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
     region = region_of(export, law)
     sector, (youngest, oldest) = sector_of(spec), record.delay or (0, 0)
     return MonitorLimits(
-        period=to_float32(period),
+        period=round_float32(period),
         torque=float32_not_above(spec.limits.torque.not_above),
         command=None if command is None else float32_not_above(command.not_above),
         age=record.delay,
@@ -190,7 +190,7 @@ def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...]
     scale = np.array([float(row[i]) ** 0.5 for i, row in enumerate(wanted)])
     unit = np.array([[float(v) for v in row] for row in wanted]) / np.outer(scale, scale)
     U = np.linalg.cholesky(unit * float(1 + ROOM)).T * scale
-    rows = tuple(tuple(to_float32(Fraction(float(v))) for v in row) for row in U)
+    rows = tuple(tuple(round_float32(Fraction(float(v))) for v in row) for row in U)
     columns = [*zip(*rows, strict=True)]
     more = [
         [sum(map(mul, a, b)) - (1 + ROOM / 2) * v for b, v in zip(columns, row, strict=True)]

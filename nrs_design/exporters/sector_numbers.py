@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below
-from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.controllers.sector import DETECTION_FACTOR, Sector
 from nrs_design.models.axis import unit
 from nrs_design.proof.bounds import lower, upper
 
@@ -41,10 +41,10 @@ def sector_macros(sector: Sector) -> Iterator[Macro]:
     yield "YIELD_LEAST", _less(1 / sector.high), f"{unit('rad/(N*m)')}, at the largest stiffness"
     yield (
         "JUDGED_HIGH",
-        _less(JUDGED * sector.high, 4),
+        _less(DETECTION_FACTOR * sector.high, 4),
         f"{unit('N*m/rad')}, below it for certain counts as judged",
     )
-    yield "JUDGED_LOW", _more(sector.low / JUDGED, 4), f"{unit('N*m/rad')}, and above it"
+    yield "JUDGED_LOW", _more(sector.low / DETECTION_FACTOR, 4), f"{unit('N*m/rad')}, and above it"
     if sector.surface_speed:
         yield "SURFACE_SPEED", _more(sector.surface_speed), f"{unit('rad/s')}, of the surface"
     if sector.speed is not None:
@@ -91,13 +91,13 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
             "for d"
         )
     yield (
-        f"In `judged` of `sample` samples {float(JUDGED):g} times the range would have been told, "
-        "whatever the noise: the stiffness was nearer, if it was in its range before."
+        f"In `judged` of `sample` samples {float(DETECTION_FACTOR):g} times the range would have "
+        "been told, whatever the noise: the stiffness was nearer, if it was in its range before."
     )
 
 
 def _surface(sector: Sector) -> str:
-    if sector.kept:
+    if sector.contact_maintained:
         return "contact is kept, with one surface"
     return {
         "fixed": "there is one surface for the whole run",
@@ -108,7 +108,10 @@ def _surface(sector: Sector) -> str:
 
 def _formula(sector: Sector) -> str:
     """Return how N follows, as `Sector.need` has it."""
-    noise, light = "4 a + 2 e (1/l + 1/h)", "c {k} d" if sector.kept else "(2 e + c {k} d)"
+    noise, light = (
+        "4 a + 2 e (1/l + 1/h)",
+        "c {k} d" if sector.contact_maintained else "(2 e + c {k} d)",
+    )
     stiff, soft = (
         f"({noise} + {light.format(k=k)} ({lever}))/({gain})"
         for k, lever, gain in (
@@ -116,9 +119,9 @@ def _formula(sector: Sector) -> str:
             ("l", "1/(c l) - 1/h", "1/(c l) - 1/l"),
         )
     )
-    if sector.surface != "touched" and not sector.kept:
+    if sector.surface != "touched" and not sector.contact_maintained:
         stiff = f"({noise} + d)/(1/h - 1/(c h))"
-    after = ", where the torque comes down to zero" if sector.kept else ""
+    after = ", where the torque comes down to zero" if sector.contact_maintained else ""
     return f"{stiff} for c > 1, {soft} for c < 1{after}"
 
 

@@ -135,8 +135,8 @@ def logic_cases(logic: StepLogic) -> Iterator[list[int | str]]:
         for name in logic.signals
     }
     for _ in range(LOGIC_COUNT):
-        mode = next(bits) % (len(logic.stays) + 1)
-        stay = logic.stays[mode] if mode < len(logic.stays) else 0
+        mode = next(bits) % (len(logic.hold_samples) + 1)
+        stay = logic.hold_samples[mode] if mode < len(logic.hold_samples) else 0
         held = (0, max(stay - 1, 0), stay, stay + 1, LONGEST)[next(bits) % 5]
         signals = [_signal(next(bits), near[name]) for name in logic.signals]
         values = np.array(signals, np.uint32).view(np.float32).tolist()

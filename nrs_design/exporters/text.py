@@ -61,7 +61,7 @@ class CNames:
 
     def threshold(self, index: int, bound: SignalBound) -> str:
         """Return the macro of a bound of the switch with that number, counted from one."""
-        side = "ABOVE" if bound.above else "BELOW"
+        side = "ABOVE" if bound.is_lower else "BELOW"
         return f"{self.upper}_LOGIC_{index}_{bound.signal.upper()}_{side}"
 
     def hold(self, controller: str) -> str:
@@ -76,14 +76,14 @@ class CNames:
     def stays(self, law: StepLaw) -> dict[str, int]:
         """Return the macros of mode and stays of a mode logic with their numbers."""
         assert law.logic is not None
-        holds = zip(law.modes, law.logic.stays, strict=True)
+        holds = zip(law.modes, law.logic.hold_samples, strict=True)
         return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in holds}}
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
         """Return every coefficient of a law with its number, by its macro."""
         found: dict[str, tuple[Coefficient, Fraction]] = {}
         for coefficient in law.coefficients:
-            owners = law.modes if coefficient.by_mode else ("",)
+            owners = law.modes if coefficient.differs_by_mode else ("",)
             for owner, value in zip(owners, coefficient.values, strict=True):
                 found[self.coefficient(coefficient, owner)] = coefficient, value
         return found

@@ -207,7 +207,7 @@ class Examiner:
             if isnan(limit):
                 continue
             reached = highest < limit
-            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
+            held = ", all parameters in proportion" if item.problem.loop.contact.has_memory else ""
             held += "" if reached else self._in_contact
             verb = "stays below" if reached else "reaches"
             message = (

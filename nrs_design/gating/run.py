@@ -22,7 +22,7 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, Fault, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, failed, is_utf8
-from nrs_design.models.axis import about
+from nrs_design.models.axis import axis_context
 from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.certification import Overrides, Result, run_verification, search_limits
@@ -120,7 +120,7 @@ def _examine_safely(
             )
             fault = Fault(message, place.line, place.column, remedy)
             raise SpecError.of((fault,), loaded.path)
-        with about(getattr(loaded.spec, "axis", None)):
+        with axis_context(getattr(loaded.spec, "axis", None)):
             return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
     except Exception as error:
         # One spec must not keep the others from being examined, whatever goes wrong with it.

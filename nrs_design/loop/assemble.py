@@ -227,7 +227,7 @@ def assemble(
     system = with_constants(system, constants, modes)
     period = None if sampling is None else sampling.outer
     # Environments with memory stand at their nominal values at all points.
-    remembers = any(e.law.remembers for e in plant.among(design.contacts))
+    remembers = any(e.law.has_memory for e in plant.select_environments(design.contacts))
     but = points == ENDS and remembers and "memory"
     disturbed = bool(system.channels) and period is not None
     assumptions = (
@@ -248,7 +248,7 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
         return system
     channels = tuple(replace(c, unit=axis.unit(c.unit)) for c in system.channels)
     outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)
-    states = tuple(map(axis.named, system.states))
+    states = tuple(map(axis.label, system.states))
     return replace(system, states=states, channels=channels, outputs=outputs)
 
 

@@ -224,7 +224,7 @@ def with_command(
 
 def _check_memory(environments: Sequence[Environment]) -> None:
     """Refuse tissue that creeps, for which no bound under a command is stated."""
-    if any(environment.law.remembers for environment in environments):
+    if any(environment.law.has_memory for environment in environments):
         raise AssemblyError(
             "a bound under a velocity command is stated on elastic and damped environments",
             remedy="leave disturbances out",

@@ -22,7 +22,7 @@ from functools import lru_cache
 from itertools import product
 from typing import NamedTuple, TypeAlias
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import (
     Admittance,
     CompliantLaw,
@@ -43,7 +43,7 @@ from nrs_design.loop.sampled import Rows as Flow
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.axis import unit
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.drive import GAIN, LOAD, Drive, Takes
+from nrs_design.models.drive import GAIN, LOAD, CommandInterface, Drive
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ZERO, LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
@@ -152,7 +152,7 @@ class ContinuousAxis(AbstractAxis):
         """Return a mode."""
         motion = self.motion_at(place.motor)
         if law.commands == "position":
-            placed = motion if isinstance(motion, Realization) else motion.placed
+            placed = motion if isinstance(motion, Realization) else motion.position_loop
             return position_mode(placed, law, contact, self.low_pass, cut=cut)
         return velocity_mode(motion, law, contact, self.low_pass, cut)
 
@@ -177,7 +177,7 @@ class ProcessorAxis(AbstractAxis):
     sampling: SamplingSpec
     drive: Drive
     low_pass: LowPass | None = None
-    takes: Takes | None = None
+    takes: CommandInterface | None = None
 
     @property
     def period(self) -> Fraction:
@@ -195,7 +195,7 @@ class ProcessorAxis(AbstractAxis):
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
     ) -> list[CutLoop]:
         """Return the loops of three admittances."""
-        T = to_float32(self.sampling.outer)
+        T = round_float32(self.sampling.outer)
         laws = [Admittance.discrete(a if inert else None, b, T, spring) for a, b in COORDINATES]
         return [self._loop(self._step(law, contact, place, cut) for cut in _CUTS) for law in laws]
 
@@ -209,7 +209,7 @@ class ProcessorAxis(AbstractAxis):
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare
     ) -> Rows:
         """Return the map of a period in which a share of the force acts."""
-        if cut.carried and not cut.sensed and self.takes is Takes.VELOCITY:
+        if cut.carried and not cut.sensed and self.takes is CommandInterface.VELOCITY:
             # A spring that draws the measured position enters the law where the force does, so it
             # is cut as well.
             law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
@@ -238,10 +238,10 @@ def _sampled_loop(
     """Return the loop of a law, and the flow of a period at one point."""
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
-    D = axis.motion.over(axis.sampling.period.exact)
-    step = StepFrame(axis.motion.Kp, D, low_pass, takes=axis.takes)
+    D = axis.motion.difference_gain(axis.sampling.period.exact)
+    step = StepFrame(axis.motion.Kp, D, low_pass, interface=axis.takes)
     timing = CommandTiming(axis.sampling.step, place.late, place.late)
-    known = axis.drive.at({"tau": place.motor.time_constant, GAIN: place.motor.gain})
+    known = axis.drive.fix_values({"tau": place.motor.time_constant, GAIN: place.motor.gain})
     if memory is not None:
         known = known.remembering(REMEMBERED, [*map(Interval.point, memory)])
     touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
@@ -266,7 +266,7 @@ def axis_of(
     if sampling.outer < sampling.period.exact:
         return None
     places = tuple(_places(ranges, sampling.delay, spec.late))
-    return ProcessorAxis(places, motion, sampling, plant.held, low_pass, spec.takes)
+    return ProcessorAxis(places, motion, sampling, plant.zoh_drive, low_pass, spec.takes)
 
 
 def _places(

@@ -37,7 +37,7 @@ from nrs_design.loop.hull import (
 )
 from nrs_design.loop.located import labelled_ends
 from nrs_design.loop.sampled import DELTA, Rows
-from nrs_design.models.drive import GAIN, LOAD, MEMORY, Drive, Takes
+from nrs_design.models.drive import GAIN, LOAD, MEMORY, CommandInterface, Drive
 from nrs_design.models.interval import Interval
 from nrs_design.proof.enclosure import ball_around, precision
 
@@ -72,7 +72,7 @@ class HeldDrive:
     def points(self) -> Iterator[tuple[tuple[str, ...], HeldDrive]]:
         """Yield the drives at the ends of the ranges, with the labels of each."""
         for labels, values in labelled_ends(self.drive.ranges):
-            drive = self.drive.at(values)
+            drive = self.drive.fix_values(values)
             for times, timing in self.timing.points():
                 yield (*labels, *times), HeldDrive(drive, timing)
 
@@ -160,7 +160,7 @@ class _Flow:
         from flint import fmpq_mat
 
         n, period = self.drive.order, self.spans[0]
-        if self.drive.takes is Takes.POSITION or period.low != period.high:
+        if self.drive.interface is CommandInterface.POSITION or period.low != period.high:
             return None
         found: tuple[list[Fraction], Fraction] | None = None
         for values in product(*({*ends} for ends in self.ends.values())):
@@ -186,7 +186,7 @@ class _Flow:
         n, acts = self.drive.order, self.entries.acting(self.whole)
         own = {n - 2} if self.drive.memory else set()
         first = [*range(n + 1)] if self.lasting is None else [*range(n)]
-        placed = self.drive.takes is Takes.POSITION
+        placed = self.drive.interface is CommandInterface.POSITION
         return [
             (s, i, j)
             for s in range(len(self.spans))
@@ -351,7 +351,7 @@ class _Flow:
         def row(i: int) -> tuple[Fraction, ...]:
             commands = [gain * entries.get((s, i, n), ZERO) for s in range(len(self.spans))]
             states = [entries.get((0, i, j), ZERO) for j in range(n)]
-            if self.drive.takes is Takes.POSITION and (0, i, n - 1) not in entries:
+            if self.drive.interface is CommandInterface.POSITION and (0, i, n - 1) not in entries:
                 states[-1] = -commands[0]
             return (*[ZERO] * jumps, *states, *commands)
 

@@ -56,7 +56,8 @@ class Loss(Enum):
         if contact == "kept" or ((slowed or True in sprung) and contact is None):
             return cls.NEVER
         if any(
-            e.preloaded or e.law.remembers or (e.parts and not e.each_losable) for e in environments
+            e.preloaded or e.law.has_memory or (e.parts and not e.each_losable)
+            for e in environments
         ):
             return cls.NOT_MODELLED
         return cls.ANYWHERE if sprung == {True} else cls.SURFACE

@@ -176,7 +176,7 @@ def constants_of(
     The flow of a period encloses the numbers of its drive, but for the gain of a motor, and those
     of a load: their corners are none of their values.
     """
-    drive = plant.held
+    drive = plant.zoh_drive
     contacts = [e for e in plant.environments if not e.parts and e.name in touched]
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:

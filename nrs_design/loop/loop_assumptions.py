@@ -15,7 +15,7 @@ from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.shared_state import REFERENCE, SharedState
 from nrs_design.models.axis import AxisType
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 from nrs_design.models.interval import moving
 from nrs_design.models.plant import Plant
 from nrs_design.proof.assumption import Assumption
@@ -115,7 +115,7 @@ def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
 
 def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Yield the evolution of idle states of impedance controllers, and of an idle integral."""
-    named, laws = loop.design.axis.named, [c.law for c in loop.design.controllers]
+    named, laws = loop.design.axis.label, [c.law for c in loop.design.controllers]
     decay = idle_decay(idle)
     rate = decay and exact_decimal(decay)
     driving = _names(law for law in laws if law.commands == "velocity")
@@ -125,10 +125,10 @@ def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption
         yield assume(
             f"idle.{how}", driving=driving, others=others, states=tuple(states), decay=rate
         )
-    if (law := next((law for law in laws if law.bleeds), None)) is not None:
+    if (law := next((law for law in laws if law.is_leaky), None)) is not None:
         yield assume(
             "idle.integral" if decay else "idle.held-integral",
-            others=_names(law for law in laws if not law.bleeds),
+            others=_names(law for law in laws if not law.is_leaky),
             states=tuple(map(named, law.states)),
             law=law.name,
             decay=rate,
@@ -156,7 +156,7 @@ def assume_sampled_loop(
     """Yield the assumptions about the sampled loop of an interaction design."""
     reset = conditions.idle is not None and conditions.idle.reset
     disturbed = conditions.disturbances is not None
-    environments, program = plant.among(design.contacts), loop.program
+    environments, program = plant.select_environments(design.contacts), loop.program
     timing, axis = loop.calendar.timing, conditions.axis
     beyond = disturbed and "disturbances"
     single, steady = sampling.round == 1, sampling.jitter is None
@@ -201,7 +201,7 @@ def assume_sampled_loop(
     )
     if any(c.law.spring for c in design.controllers):
         shared = "spring.shared" if program.idle is None else "spring.idle"
-        velocity = program.step.takes is Takes.VELOCITY
+        velocity = program.step.interface is CommandInterface.VELOCITY
         yield from map(assume, ["spring.measured"] if velocity else [shared, "spring.sample"])
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
@@ -239,7 +239,7 @@ def _assume_motor(
     # Parameters change at samples only.
     moves = f"{how}-sampled" if (how := moving(numbers)) else ""
     motor = ranges.assumed(axis) | {"moving": moves}
-    if drive is not None and drive.takes is Takes.TORQUE:
+    if drive is not None and drive.interface is CommandInterface.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
         B = f"{drive.ranges['B'].text} {axis.unit('N*m*s/rad')}"
         yield assume("motor.torque", J=J, B=B, moving=moves, but=but)
@@ -247,7 +247,7 @@ def _assume_motor(
         tau = f"{drive.ranges['tau'].text} s"
         yield assume("motor.followed-position", tau=tau, moving=moves)
     elif drive is not None:
-        yield assume("motor.followed-function", what=drive.takes)
+        yield assume("motor.followed-function", what=drive.interface)
     elif plant.slowed:
         yield assume("motor.loaded", **motor)
     else:
@@ -259,7 +259,7 @@ def _assume_motor(
             yield assume("motor.followed", **motor)
         else:
             yield assume("nominal-motor.sampled" if ranges.fixed else "motor.sampled", **motor)
-    if not plant.held.loaded:
+    if not plant.zoh_drive.loaded:
         yield assume("unloaded.sampled")
     elif drive is None and inertia is not None:
         weight = f"{exact_text(inertia)} {axis.unit('kg*m^2')}"
@@ -284,8 +284,8 @@ def _assume_positions(
     if program.idle is None:
         return
     decay = exact_decimal(program.idle)
-    others = _names(law for law in laws if not law.bleeds)
-    if others and any(law.bleeds for law in laws):
+    others = _names(law for law in laws if not law.is_leaky)
+    if others and any(law.is_leaky for law in laws):
         yield assume("idle.sampled-bleeding", others=others, decay=decay)
     if moving:
         left = "all" if any(law.states for law in moving) else "reference"
@@ -302,7 +302,7 @@ def _assume_arithmetic(
 ) -> Iterator[Assumption]:
     """Yield the coefficients of the program, and its roundings."""
     step, known = program.step, program.listed.law.coefficient
-    gains = {} if step.takes else {"Kp": step.Kp, "Kd/T": step.D}
+    gains = {} if step.interface else {"Kp": step.Kp, "Kd/T": step.D}
     gains |= {
         f"{symbol} of {name}": number
         for name, law in laws.items()
@@ -342,7 +342,7 @@ def _assume_tissue(
 ) -> Assumption:
     """Return the parameter ranges of the environments."""
     ranges = [
-        f"{e.name}: {symbol} {interval.where} {axis.unit(unit)}"
+        f"{e.name}: {symbol} {interval.description} {axis.unit(unit)}"
         for e in environments
         for symbol, interval, unit in zip(
             e.law.parameters(), e.ranges, e.law.units(rotational=True), strict=True

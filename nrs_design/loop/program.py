@@ -27,7 +27,7 @@ from nrs_design.controllers.step_law import StepFrame, build_law, numbers_in_for
 from nrs_design.errors import InternalError
 from nrs_design.loop.calendar import Turn
 from nrs_design.loop.wires import Wires
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordinates, zero
 
 # Inputs that are not zero in the loop of a proof.
@@ -107,7 +107,7 @@ class ListedLaw:
 
 
 @lru_cache(maxsize=32)
-def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
+def list_law(order: int, kinds: Kinds, takes: CommandInterface | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
     `order` is that of the filter of the force, `takes` the command of a robot without a motor of
@@ -115,7 +115,7 @@ def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
-    law = build_law(StepFrame(ANY, ANY, low_pass, takes=takes), laws, ANY)
+    law = build_law(StepFrame(ANY, ANY, low_pass, interface=takes), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
     # Commands are zero in the loop of a proof; angles count from the commanded angle.
     given: dict[str, LinearForm] = {
@@ -278,7 +278,7 @@ class SampledProgram:
     @cached_property
     def listed(self) -> ListedLaw:
         """The list of operations."""
-        return list_law(self.step.order, kinds_of(self.laws), self.step.takes)
+        return list_law(self.step.order, kinds_of(self.laws), self.step.interface)
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -344,7 +344,7 @@ class SampledProgram:
             moved = ONE if moving and name in self.places else ZERO
             w.set({f"{name}+": w.sum((ONE, step.result(result)), (moved, w[ROUNDED_REFERENCE]))})
         if turn is not Turn.ADMITTANCE:
-            streamed = ONE if self.step.takes is Takes.POSITION else ZERO
+            streamed = ONE if self.step.interface is CommandInterface.POSITION else ZERO
             w.set({"command": w.sum((ONE, step.command()), (streamed, w[ROUNDED_REFERENCE]))})
             sizes |= {} if self.step.streams else step.motion_sizes()
         return sizes if turn is Turn.MOTION else sizes | step.other_sizes()

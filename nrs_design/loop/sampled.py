@@ -27,7 +27,7 @@ from nrs_design.loop.program import (
     SampledProgram,
 )
 from nrs_design.loop.wires import Wires
-from nrs_design.models.drive import OMEGA, Drive, Takes
+from nrs_design.models.drive import OMEGA, CommandInterface, Drive
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
 DELTA, HELD = "delta [rad]", "u held"
@@ -78,7 +78,10 @@ class SampledLoop:
     @cached_property
     def from_deflection(self) -> frozenset[str]:
         """The states that count from the deflection."""
-        stored, placed = self.program.stored, self.program.step.takes is Takes.POSITION
+        stored, placed = (
+            self.program.stored,
+            self.program.step.interface is CommandInterface.POSITION,
+        )
         held = (HELD,) if self.calendar.holds else ()
         commands = (*held, *self.calendar.sent) if placed else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))

@@ -62,7 +62,7 @@ class SharedState:
     @property
     def placed(self) -> Realization | LoadedMotionLoop:
         """The motion loop from position to position; its motor has no ranges."""
-        return self.realization if self.joint is None else self.joint.nominal.placed
+        return self.realization if self.joint is None else self.joint.nominal.position_loop
 
     @property
     def motor_box(self) -> Box:
@@ -131,8 +131,8 @@ class SharedState:
 
         States that others leave alone decay, and so do memories of what is not touched.
         """
-        contact = None if environment is None else environment.at(values)
-        others = self.bleeding if self.idle is not None and not law.bleeds else ()
+        contact = None if environment is None else environment.evaluate(values)
+        others = self.bleeding if self.idle is not None and not law.is_leaky else ()
         decay = ZERO if self.idle is None else idle_decay(self.idle)
         if self.is_placed:
             bleeding = decay if others else None
@@ -165,14 +165,14 @@ def shared_state(
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
     state = SharedState(
         design,
-        plant.among(design.contacts),
+        plant.select_environments(design.contacts),
         realize(loop),
-        loop.given,
+        loop.is_stated,
         Joint.of(plant, design.motion),
         design.leading_laws(is_mixture=idle is not None)[0],
         idle,
         conditions.offset,
-        next((law.states for law in laws if law.bleeds), ()),
+        next((law.states for law in laws if law.is_leaky), ()),
     )
     if (fault := next(_faults(state), None)) is not None:
         raise fault

@@ -79,13 +79,13 @@ def close_sampled_loop(
     laws = {
         c.name: c.law.discretize(sampling.outer, sampling.admittance) for c in design.controllers
     }
-    environments = plant.among(design.contacts)
+    environments = plant.select_environments(design.contacts)
     if points:
         # The rates of a memory depend on its stiffness: their ends belong to no loop.
-        environments = tuple(e.scaled(ZERO) if e.law.remembers else e for e in environments)
+        environments = tuple(e.scaled(ZERO) if e.law.has_memory else e for e in environments)
         # Saturation is stated for the enclosure of all drives.
         conditions = replace(conditions, initial_force=None)
-    drive = plant.held_at(environments)
+    drive = plant.contact_drive(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
     held = HeldDrive(drive, loop.calendar.timing)
     loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
@@ -158,7 +158,9 @@ def _wired(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
     filtered = None if low_pass is None else low_pass.discretize(sampling.outer)
-    step = StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered, takes=design.takes)
+    step = StepFrame(
+        motion.Kp, motion.difference_gain(sampling.period.exact), filtered, interface=design.takes
+    )
     program = SampledProgram(step, laws, None if idle is None else idle_share(idle, sampling.outer))
     timing = CommandTiming(sampling.step, *conditions.command_delay, sampling.unsteady)
     calendar = Calendar(timing, turns=turns_of(sampling))

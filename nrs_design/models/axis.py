@@ -61,11 +61,11 @@ class AxisType(StrEnum):
 
     def unit(self, turning: str) -> str:
         """Return the unit of a quantity on this axis, given the unit on a rotary axis."""
-        if turning not in _every():
+        if turning not in _unit_table():
             raise InternalError(f"{turning!r} is no unit of an axis")
-        return turning if self is AxisType.ROTARY else _every()[turning]
+        return turning if self is AxisType.ROTARY else _unit_table()[turning]
 
-    def named(self, text: str) -> str:
+    def label(self, text: str) -> str:
         """Return a name with its unit in brackets, such as ``vm [rad/s]``, on this axis."""
         name, opened, tail = text.partition(" [")
         unit_text, closed, suffix = tail.partition("]")
@@ -78,7 +78,7 @@ class AxisType(StrEnum):
 
 
 @cache
-def _every() -> Mapping[str, str]:
+def _unit_table() -> Mapping[str, str]:
     """Return the units of both in every way they are written."""
     found = {}
     for dot, square in _STYLES:
@@ -88,7 +88,7 @@ def _every() -> Mapping[str, str]:
     return found
 
 
-def axis_with(states: Iterable[str]) -> AxisType:
+def find_axis(states: Iterable[str]) -> AxisType:
     """Return the axis whose states have these names: one that slides, if one of them is in m."""
     units = {text.partition(" [")[2] for text in states}
     return AxisType.PRISMATIC if units & {"m]", "m/s]"} else AxisType.ROTARY
@@ -110,7 +110,7 @@ def unit(turning: str) -> str:
 
 def labelled(text: str) -> str:
     """Return a label with its unit in brackets, on the `current` axis."""
-    return current().named(text)
+    return current().label(text)
 
 
 def take(axis: object) -> Token[AxisType]:
@@ -119,7 +119,7 @@ def take(axis: object) -> Token[AxisType]:
 
 
 @contextmanager
-def about(axis: object) -> Iterator[None]:
+def axis_context(axis: object) -> Iterator[None]:
     """Make an axis the `current` one; anything else stands for a rotary axis."""
     token = take(axis)
     try:

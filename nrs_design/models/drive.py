@@ -26,7 +26,7 @@ MEMORY = ("r1", "r2")
 GAIN = "Km"
 
 
-class Takes(StrEnum):
+class CommandInterface(StrEnum):
     """Kind of command of a robot."""
 
     VELOCITY = "velocity"
@@ -35,17 +35,25 @@ class Takes(StrEnum):
 
 
 # Units of commands to robots with drives of their own.
-COMMANDS: Mapping[Takes, str] = {
-    Takes.VELOCITY: "rad/s",
-    Takes.POSITION: "rad",
-    Takes.TORQUE: "N*m",
+COMMANDS: Mapping[CommandInterface, str] = {
+    CommandInterface.VELOCITY: "rad/s",
+    CommandInterface.POSITION: "rad",
+    CommandInterface.TORQUE: "N*m",
 }
-SLIDING: Mapping[Takes, str] = {Takes.VELOCITY: "m/s", Takes.POSITION: "m", Takes.TORQUE: "N"}
+SLIDING: Mapping[CommandInterface, str] = {
+    CommandInterface.VELOCITY: "m/s",
+    CommandInterface.POSITION: "m",
+    CommandInterface.TORQUE: "N",
+}
 
 
-def taken_in(command: str) -> Takes | None:
+def find_interface(command: str) -> CommandInterface | None:
     """Return the command interface with a unit; None for commands of a motor."""
-    interfaces = ((interface, unit) for commands in (COMMANDS, SLIDING) for interface, unit in commands.items())
+    interfaces = (
+        (interface, unit)
+        for commands in (COMMANDS, SLIDING)
+        for interface, unit in commands.items()
+    )
     return next((takes for takes, unit in interfaces if unit == command), None)
 
 
@@ -75,7 +83,7 @@ class Drive:
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    takes: Takes | None  # None for the commands of a motor
+    interface: CommandInterface | None  # None for the commands of a motor
     states: tuple[str, ...]  # Names and units; the velocity first, the deflection left out
     # [A, B] over the states and the deflection; a velocity that jumps with the command is no state.
     rates: MultiAffine
@@ -125,7 +133,7 @@ class Drive:
             memory=memory,
         )
 
-    def at(self, values: Mapping[str, Fraction]) -> Drive:
+    def fix_values(self, values: Mapping[str, Fraction]) -> Drive:
         """Return the drive at values of its numbers, at their nominal ones by default."""
         known = {s: Interval.point(values.get(s, r.nominal)) for s, r in self.ranges.items()}
         return replace(self, ranges=known)
@@ -174,7 +182,9 @@ def torque_drive(inertia: Interval, friction: Interval) -> Drive:
         (): ((ZERO, ZERO, ZERO), (ONE, ZERO, ZERO)),
     }
     ranges = {"J": inertia, "B": friction}
-    return Drive(Takes.TORQUE, (OMEGA,), MultiAffine(rows), ranges, frozenset({"J"}), loaded=True)
+    return Drive(
+        CommandInterface.TORQUE, (OMEGA,), MultiAffine(rows), ranges, frozenset({"J"}), loaded=True
+    )
 
 
 def lagging_drive(time_constant: Interval) -> Drive:
@@ -184,7 +194,7 @@ def lagging_drive(time_constant: Interval) -> Drive:
     """
     row: Mapping[tuple[str, ...], Rows] = {("tau",): ((-ONE, ONE),)}
     return Drive(
-        Takes.POSITION,
+        CommandInterface.POSITION,
         (OMEGA,),
         MultiAffine(row),
         {"tau": time_constant},
@@ -202,7 +212,7 @@ def velocity_drive(loop: MotionLoop) -> Drive:
     n = len(A)
     rates = [(*row, ZERO, b) for row, b in zip(A, B, strict=True)]
     way = (ONE, *(ZERO,) * (n + 1))
-    return Drive(Takes.VELOCITY, _states(n), MultiAffine({(): (*rates, way)}), {})
+    return Drive(CommandInterface.VELOCITY, _states(n), MultiAffine({(): (*rates, way)}), {})
 
 
 def position_drive(loop: MotionLoop) -> Drive:
@@ -238,7 +248,7 @@ def position_drive(loop: MotionLoop) -> Drive:
     jumps = B[0] != 0
     names = _states(n if jumps else n - 1)
     speed = MultiAffine({(): (rates[-1],)}) if jumps else None
-    return Drive(Takes.POSITION, names, MultiAffine({(): tuple(rates)}), {}, speed=speed)
+    return Drive(CommandInterface.POSITION, names, MultiAffine({(): tuple(rates)}), {}, speed=speed)
 
 
 def _states(n: int) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ class Interval:
         return f"[{exact_text(self.low)}, {exact_text(self.high)}]"
 
     @property
-    def where(self) -> str:
+    def description(self) -> str:
         """Text behind the name of a number: ``= 2``, or ``in [1, 3]``."""
         return f"{'in' if self.ends[1:] else '='} {self.text}"
 

@@ -18,7 +18,9 @@ class MotionLoop:
     # numerator, denominator: coefficients, highest power first.
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
-    given: bool = False  # Stated by the spec, instead of following from actuator and motion gains
+    is_stated: bool = (
+        False  # Stated by the spec, instead of following from actuator and motion gains
+    )
 
     @property
     def delay(self) -> Fraction:
@@ -121,7 +123,7 @@ class JointMotionLoop:
         return [slip, turn]
 
     @property
-    def placed(self) -> LoadedMotionLoop:
+    def position_loop(self) -> LoadedMotionLoop:
         """The same loop, from position to position."""
         return LoadedMotionLoop(self)
 

@@ -33,18 +33,18 @@ class Plant:
         return self.drive is None and self.load_inertia is not None
 
     @property
-    def held(self) -> Drive:
+    def zoh_drive(self) -> Drive:
         """What moves the joint between samples."""
         motor = self.actuator_ranges
         return self.drive or motor_drive(motor.gain, motor.time_constant, self.load_inertia)
 
-    def held_at(self, environments: Sequence[Environment]) -> Drive:
+    def contact_drive(self, environments: Sequence[Environment]) -> Drive:
         """Return the drive between samples, with the memory of an environment."""
         for environment in environments:
             if (rates := environment.memory_rates) is not None:
                 memory = f"{environment.name}: {environment.law.states[-1]}"
-                return self.held.remembering(memory, rates)
-        return self.held
+                return self.zoh_drive.remembering(memory, rates)
+        return self.zoh_drive
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.
@@ -57,7 +57,7 @@ class Plant:
         """Return the environment of that name; the spec guarantees that it exists."""
         return next(environment for environment in self.environments if environment.name == name)
 
-    def among(self, names: Collection[str]) -> tuple[Environment, ...]:
+    def select_environments(self, names: Collection[str]) -> tuple[Environment, ...]:
         """Return the environments of these names, in the order of the spec."""
         return tuple(environment for environment in self.environments if environment.name in names)
 

@@ -9,7 +9,7 @@ from math import ceil
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.models.axis import about
+from nrs_design.models.axis import axis_context
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.sampling import LONGEST_DELAY
 
@@ -42,7 +42,7 @@ def placed(loaded: LoadedSpec) -> Iterator[None]:
     Their words are about its axis.
     """
     try:
-        with about(getattr(loaded.spec, "axis", None)):
+        with axis_context(getattr(loaded.spec, "axis", None)):
             yield
     except NrsDesignError as error:
         if error.path is None and error.at:

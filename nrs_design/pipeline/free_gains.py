@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.errors import DesignError
 from nrs_design.models.axis import unit
 from nrs_design.pipeline.certification import assemble_spec
@@ -153,14 +153,14 @@ class FreeGains:
 
     def design(self, x: Array) -> ControllerDesign:
         """Return the design with the single-precision gains next to a point."""
-        return self._design(x, to_float32)
+        return self._design(x, round_float32)
 
     def _design(self, x: Array, rounded: Callable[[Fraction], Fraction]) -> ControllerDesign:
         gains = {
             name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
             for name, values in self.gains(x).items()
         }
-        return self.designed.design.with_gains(gains)
+        return self.designed.design.replace_gains(gains)
 
     def system(self, x: Array) -> SwitchedSystem:
         """Assemble the modes with the single-precision gains next to a point."""
@@ -204,8 +204,12 @@ class FreeGains:
 
         chosen: dict[str, dict[str, Fraction]] = {}
         for (name, gain), (value, _) in one.gains.items():
-            chosen.setdefault(name, {})[gain] = to_float32(value)
-        found, gains, costs = self.designed.design.with_gains(chosen), self.gains(x), self.costs(x)
+            chosen.setdefault(name, {})[gain] = round_float32(value)
+        found, gains, costs = (
+            self.designed.design.replace_gains(chosen),
+            self.gains(x),
+            self.costs(x),
+        )
         for own, value in zip(self.coordinates, x, strict=True):
             gains[own.controller][own.gain] = own.settled(float(value))
         best = {

@@ -46,12 +46,12 @@ def run_design(
     designed = design_at_least_cost(loaded)
     if designed is None:
         return None
-    from nrs_design.controllers.gains import steering_goals, with_chosen
+    from nrs_design.controllers.gains import apply_free_gains, steering_goals
 
     if not steering_goals(designed.spec):
         return designed
     if recorded is not None:
-        return replace(designed, design=with_chosen(designed.spec, designed.design, recorded))
+        return replace(designed, design=apply_free_gains(designed.spec, designed.design, recorded))
     from nrs_design.design.analysis import analyze_design
     from nrs_design.pipeline.certified_optimum import find_certified_optimum
 

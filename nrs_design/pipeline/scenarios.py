@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import AssemblyError, DesignError, NrsDesignError
-from nrs_design.models.axis import axis_with
+from nrs_design.models.axis import find_axis
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed, run_analysis
 from nrs_design.progress import Progress, silent
@@ -275,7 +275,9 @@ def run_worst_case(
     try:
         system = _commanded(designed)
         outputs = (*system.outputs, *_deflection(system))
-        runs = worst_runs(system, outputs, designed.plant.among(designed.design.contacts))
+        runs = worst_runs(
+            system, outputs, designed.plant.select_environments(designed.design.contacts)
+        )
     except (AssemblyError, ValueError) as error:
         message = error.message if isinstance(error, AssemblyError) else str(error)
         with placed(designed.loaded):
@@ -299,8 +301,8 @@ def _deflection(system: SwitchedSystem) -> Iterator[Output]:
     from nrs_design.proof.matrix import RationalMatrix
     from nrs_design.simulation.worst_case import DEFLECTION
 
-    axis = axis_with(system.states)
-    delta = axis.named("delta [rad]")
+    axis = find_axis(system.states)
+    delta = axis.label("delta [rad]")
     if delta in system.states:
         row = RationalMatrix.from_rows([[int(state == delta) for state in system.states]])
         yield Output(DEFLECTION, axis.unit("rad"), (row,))

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import canonical, to_document
-from nrs_design.models.axis import about
+from nrs_design.models.axis import axis_context
 from nrs_design.reporting.document import Report
 from nrs_design.reporting.evidence import evidence_sections
 from nrs_design.reporting.remedies import remedies_section
@@ -52,7 +52,7 @@ def build_report(
 
     Without an analysis it has no margins and no design figures.
     """
-    with about(getattr(result.loaded.spec, "axis", None)):
+    with axis_context(getattr(result.loaded.spec, "axis", None)):
         spec, certification, designed = result.loaded.spec, result.certification, result.designed
         system = certification.system
         first = remedies_section(result, margins, blocked)

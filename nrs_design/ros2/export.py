@@ -158,7 +158,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
 
 def _stiffness_range(designed: Designed, controller: Controller) -> Range:
     """Return the stiffness that a controller may touch, in N m/rad or N/m."""
-    contacts = designed.plant.among(controller.contacts)
+    contacts = designed.plant.select_environments(controller.contacts)
     for one in contacts:
         _refuse(
             one.parameters.keys() != {"k"},

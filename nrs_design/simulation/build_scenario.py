@@ -99,7 +99,7 @@ def _surface(
     environment = plant.environment(name)
     law: Element | AbstractNonlinearLaw
     if environment.nonlinear is not None:
-        law = environment.nonlinear.drawn(spec.environments[name].drawn_at_pivot(pick))
+        law = environment.nonlinear.build(spec.environments[name].drawn_at_pivot(pick))
     else:
         law = environment.law(*map(pick, environment.ranges)).element
     return Surface(name, law, angle, sign)

@@ -13,7 +13,7 @@ from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec
 
 # The same number after a conversion may be a rounding above.
-_SAME = 1 + 1e-12
+_ROUNDING = 1 + 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Coverage:
             "force error": errors.force_step / 2,
         }
         for name, size in acting.items():
-            if size > limits.get(name, 0.0) * _SAME:
+            if size > limits.get(name, 0.0) * _ROUNDING:
                 yield f"the {name} is larger than the proof takes it for"
         if errors.friction:
             yield "friction may change its sign within a period"
@@ -99,7 +99,9 @@ class Coverage:
             return
         period, youngest, oldest = run.sampling
         shortest, longest = sampling.delay
-        equal_periods = period == float(sampling.period.exact) and run.outer == float(sampling.outer)
+        equal_periods = period == float(sampling.period.exact) and run.outer == float(
+            sampling.outer
+        )
         if not equal_periods or youngest < shortest or oldest > longest:
             yield "period or delay are not those of the proof"
 

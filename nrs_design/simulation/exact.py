@@ -33,7 +33,7 @@ POINTS = 2000
 EVENT_STEPS = 250
 # Effects that this engine leaves out, and those of the scenario, if it has any.
 LEFT_OUT_EXACTLY = "sampling, delay and rounding of the law, and the limit of the motor's command"
-ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
+OMITTED_ERRORS = "friction, resolutions, noise and jitter of the scenario"
 
 
 def simulate_exactly(
@@ -104,7 +104,7 @@ class _Engine:
     def run(self) -> Run:
         """Go from event to event until the end."""
         scenario = self.loop.scenario
-        end, dwells, agenda = scenario.duration, scenario.control.stays, self._agenda()
+        end, dwells, agenda = scenario.duration, scenario.control.timers, self._agenda()
         while self.t < end and self.stopped is None:
             while agenda and agenda[0][0] <= self.t:
                 agenda.popleft()[1]()
@@ -122,7 +122,7 @@ class _Engine:
                     f"one event in {EVENT_STEPS} of --max-steps"
                 )
         self._record(self.z[None])
-        errors = [ERRORS_LEFT_OUT] if scenario.errors != Errors() else []
+        errors = [OMITTED_ERRORS] if scenario.errors != Errors() else []
         return Run(
             scenario.name,
             "exact",
@@ -198,7 +198,7 @@ class _Engine:
             self._record(self.z[None])
             reaches_limit = time is None and width < flow.h
             step = width if time is None else time
-            self.t, self.z = limit if reaches_limit else self.t + step, flow.after(self.z, step)
+            self.t, self.z = limit if reaches_limit else self.t + step, flow.advance(self.z, step)
             self._count(1)
             if time is not None:
                 return True
@@ -248,7 +248,7 @@ class _Engine:
         location, control = self.location, self.loop.scenario.control
         values = zip(location.bounds, (location.conditions @ self.z).tolist(), strict=True)
         self.satisfied = frozenset(b for b, v in values if _is_above(v, b in self.satisfied))
-        if self.t < self.since + control.stays.get(self.controller, 0.0):
+        if self.t < self.since + control.timers.get(self.controller, 0.0):
             return False
         unmet = {bound[0] for bound in location.bounds if bound not in self.satisfied}
         for i, switch in enumerate(control.switches):

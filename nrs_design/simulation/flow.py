@@ -64,7 +64,7 @@ class Flow:
             powers.append(E @ powers[-1])
         return np.concatenate(powers)
 
-    def after(self, z: Array, time: float) -> Array:
+    def advance(self, z: Array, time: float) -> Array:
         """Return ``exp(A t) z`` for a time from zero to h, in s."""
         terms = self._terms.dot(z).reshape(DEGREE + 1, -1)
         return np.asarray(((time / self.h) ** _POWERS).dot(terms))
@@ -106,10 +106,10 @@ class Flow:
         """Return the first time at which one signal is across, within a width."""
 
         def value(time: float) -> float:
-            return float(side * (self.signals[e] @ self.after(z, time)) + self.tolerances[e])
+            return float(side * (self.signals[e] @ self.advance(z, time)) + self.tolerances[e])
 
         def rate(time: float) -> float:
-            return float(side * (self._rates[e] @ self.after(z, time)))
+            return float(side * (self._rates[e] @ self.advance(z, time)))
 
         if value(0.0) <= 0:
             return 0.0

@@ -59,7 +59,7 @@ class Loop:
             return realize(self.plant.given_loop)
         actuator, gains = self.plant.actuator, (self.design.motion.Kp, self.design.motion.Kd)
         motor = actuator.gain, actuator.time_constant
-        return JointMotionLoop(*gains, *motor, self.plant.load_inertia).placed
+        return JointMotionLoop(*gains, *motor, self.plant.load_inertia).position_loop
 
     @cached_property
     def laws(self) -> dict[str, CompliantLaw]:
@@ -189,10 +189,10 @@ class Loop:
         if law.commands != "velocity":
             correction = self._respond(law, torque)[0]
         reference = self.row("commanded position") + correction
-        if law.bleeds:
+        if law.is_leaky:
             return reference
         # States of other laws stay in the reference, and decay there.
-        others = (name for one in self.laws.values() if one.bleeds for name in state_names(one))
+        others = (name for one in self.laws.values() if one.is_leaky for name in state_names(one))
         return sum(map(self.row, dict.fromkeys(others)), reference)
 
     def _torque(self, velocity: Array, contacts: Sequence[int]) -> Array:

@@ -20,7 +20,9 @@ class Motor:
     tau: float  # In s
     friction: float = 0.0  # In the unit of the command
 
-    def after(self, theta: float, omega: float, command: float, time: float) -> tuple[float, float]:
+    def advance(
+        self, theta: float, omega: float, command: float, time: float
+    ) -> tuple[float, float]:
         """Return angle (rad) and velocity (rad/s) after a time in s, exactly; a command is held."""
         friction = self.friction
         if not friction:
@@ -44,7 +46,9 @@ class Motor:
         """Let the velocity tend to a final one."""
         fraction = -math.expm1(-time / self.tau)
         coefficient = self.tau * fraction
-        return theta + coefficient * omega + (time - coefficient) * final, omega + fraction * (final - omega)
+        return theta + coefficient * omega + (time - coefficient) * final, omega + fraction * (
+            final - omega
+        )
 
 
 @dataclass
@@ -53,10 +57,10 @@ class DrivenJoint:
 
     generator: Array  # [[A, B], [0, 0]], shape (n + 1, n + 1)
     speed: Array | None  # The velocity by the same, where it jumps
-    rest: Array = field(repr=False)  # The states between the velocity and the deflection
+    inner_states: Array = field(repr=False)  # The states between the velocity and the deflection
 
     @classmethod
-    def of(cls, drive: Drive) -> DrivenJoint:
+    def create(cls, drive: Drive) -> DrivenJoint:
         """Return a drive at rest; the environment does not act on it."""
         n = drive.order
         known = {s: float(interval.nominal) for s, interval in drive.ranges.items()}
@@ -66,7 +70,9 @@ class DrivenJoint:
         speed = None if drive.speed is None else _evaluated(drive.speed, values, (1, n + 1))[0]
         return cls(generator, speed, np.zeros(len(drive.states) - 1))
 
-    def after(self, theta: float, omega: float, command: float, time: float) -> tuple[float, float]:
+    def advance(
+        self, theta: float, omega: float, command: float, time: float
+    ) -> tuple[float, float]:
         """Return angle (rad) and velocity (rad/s) after a time in s, and keep the other states.
 
         The command, in its unit, is held.
@@ -74,8 +80,8 @@ class DrivenJoint:
         from scipy.linalg import expm
 
         first = [] if self.speed is not None else [omega]
-        z = expm(self.generator * time) @ np.array([*first, *self.rest, theta, command])
-        self.rest = z[len(first) : -2]
+        z = expm(self.generator * time) @ np.array([*first, *self.inner_states, theta, command])
+        self.inner_states = z[len(first) : -2]
         return float(z[-2]), float(z[0] if self.speed is None else self.speed @ z)
 
 

@@ -21,7 +21,7 @@ Steps = Sequence[tuple[int, float]]
 _Piece = tuple[int, float, Array]
 
 _SAMPLES = 4000
-_FEWEST, _MOST = 3, 30
+_FEWEST, _MAX_PERIODS = 3, 30
 # Samples in one step of the period, for a smooth curve.
 _SMOOTH = 24
 # Visible growth of a state.
@@ -77,7 +77,7 @@ def time_of_growth(eigenvalue: complex, system: SwitchedSystem) -> float:
     discrete = system.time is Time.DISCRETE
     rate = math.log(max(abs(eigenvalue), 1.0)) if discrete else eigenvalue.real
     times = math.log(_GROWTH) / _FEWEST / rate if rate > 0 else math.inf
-    longest = _SAMPLES // _MOST if discrete else _SAMPLES // _MOST * fine_step(system)
+    longest = _SAMPLES // _MAX_PERIODS if discrete else _SAMPLES // _MAX_PERIODS * fine_step(system)
     return math.ceil(min(times, longest)) if discrete else min(times, longest)
 
 
@@ -100,7 +100,7 @@ def _pieces(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> Itera
 
 def _periods(radius: float, samples: int) -> int:
     exponent = math.log(max(radius, 1.0))
-    periods = math.ceil(math.log(_GROWTH) / exponent) if exponent > 1e-6 else _MOST
+    periods = math.ceil(math.log(_GROWTH) / exponent) if exponent > 1e-6 else _MAX_PERIODS
     # Three periods of a growth by many decades would leave the range of doubles.
     fewest = _FEWEST if exponent < 100 else 1
-    return max(fewest, min(periods, _MOST, _SAMPLES // samples))
+    return max(fewest, min(periods, _MAX_PERIODS, _SAMPLES // samples))

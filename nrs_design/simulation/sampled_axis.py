@@ -24,7 +24,7 @@ from nrs_design.progress import Progress
 from nrs_design.simulation.motor import DrivenJoint, Motor
 from nrs_design.simulation.run import INPUTS, OUTPUTS, PROGRESS_STEPS, Run
 from nrs_design.simulation.scenario import COMMAND, DEPTH, TORQUE, Scenario
-from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
+from nrs_design.simulation.time_response import Signal, TimeResponse, convert_units
 from nrs_design.simulation.tissue import Tissue
 from nrs_design.spec.misses import automaton_of
 from nrs_design.spec.sampling import SamplingSpec
@@ -93,7 +93,7 @@ class SampledAxis:
         drive, load, sampling = self.plant.drive, self.plant.load_inertia, self.sampling
         self.motor: Motor | DrivenJoint = Motor(gain, tau, scenario.errors.friction)
         if drive is not None and not drive.loaded:
-            self.motor = DrivenJoint.of(drive)
+            self.motor = DrivenJoint.create(drive)
         # Command per torque, in units of the command per N m.
         self.load = 0.0 if load is None else tau / (float(load) * gain)
         self.tissue = Tissue(scenario.surfaces)
@@ -118,7 +118,7 @@ class SampledAxis:
         # The command in force, and the later ones: after how long, the oldest sample first.
         self.in_force, self.pending = 0.0, deque[tuple[float, float]]()
         limit = law.coefficient.get("command_limit")
-        self.largest = math.inf if limit is None else float(limit.of(0))
+        self.largest = math.inf if limit is None else float(limit.number(0))
 
     def run(self, samples: Sequence[SampleInputs], stopped: str | None, report: Progress) -> Run:
         """Run all samples; `stopped` says why the run ends before its time."""
@@ -201,7 +201,9 @@ class SampledAxis:
         if self.logic is not None:
             float32_signals = {name: float(np.float32(value)) for name, value in signals.items()}
             mode = self.modes[self.controller]
-            mode, self.samples_in_mode = self.logic.step(mode, self.samples_in_mode, float32_signals)
+            mode, self.samples_in_mode = self.logic.step(
+                mode, self.samples_in_mode, float32_signals
+            )
             self._switch(t, self.program.law.modes[mode])
             return
         signals |= {f"{DEPTH}{j}": depth for j, depth in enumerate(depths)}
@@ -234,7 +236,7 @@ class SampledAxis:
             if self.load:
                 drive -= self.load * tissue.torque(self.theta, self.omega)
             depths = tissue.depths(self.theta)
-            self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
+            self.theta, self.omega = self.motor.advance(self.theta, self.omega, drive, part)
             tissue.creep(depths, tissue.depths(self.theta), part)
 
     def _response(self) -> TimeResponse:
@@ -245,9 +247,9 @@ class SampledAxis:
             rows[first:last],
             rows[last:],
             rows[1:2],
-            (*on_axis(OUTPUTS, axis), Signal("command", self.design.command)),
+            (*convert_units(OUTPUTS, axis), Signal("command", self.design.command)),
             tuple(Signal(_column_name(value.name), value.unit) for value in law.states),
-            on_axis(INPUTS, axis),
+            convert_units(INPUTS, axis),
             rows[2].astype(np.int64),
             law.modes,
         )

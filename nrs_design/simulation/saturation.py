@@ -28,7 +28,9 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
         # A signal depends on the states and on the signals before it, saturated or linear.
         saturated = linear = states
         for signal, row, column in zip(saturation.signals, rows, columns, strict=True):
-            argument, linear_value = ((row[:, : x.shape[1]] * x).sum(axis=1) for x in (saturated, linear))
+            argument, linear_value = (
+                (row[:, : x.shape[1]] * x).sum(axis=1) for x in (saturated, linear)
+            )
             limit = float(signal.limit)
             clipped = np.clip(argument, -limit, limit)
             derivatives += column * (clipped - linear_value)[:, None]

@@ -118,7 +118,7 @@ class Control:
     start: str  # Controller at first
     switches: tuple[Switch, ...] = ()  # The first that may be made is
     # For how long a timer holds a controller, in s.
-    stays: Mapping[str, float] = field(default_factory=dict)
+    timers: Mapping[str, float] = field(default_factory=dict)
     # Times in s at which a controller takes over, whatever signals say.
     schedule: tuple[tuple[float, str], ...] = ()
     # True for the mode logic of the spec, as in exported programs.

@@ -97,7 +97,7 @@ def all_modes(system: SwitchedSystem) -> SwitchedSystem:
     return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
 
 
-def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
+def single_mode_system(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
     mode_alone = system.modes[mode]
     return replace(system, modes=(mode_alone,), states=system.states[: mode_alone.A.shape[0]])

@@ -33,7 +33,7 @@ class Signal:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-def on_axis(signals: Iterable[Signal], axis: AxisType) -> tuple[Signal, ...]:
+def convert_units(signals: Iterable[Signal], axis: AxisType) -> tuple[Signal, ...]:
     """Return signals with the units of an axis, from those of a rotary axis."""
     return tuple(replace(signal, unit=axis.unit(signal.unit)) for signal in signals)
 

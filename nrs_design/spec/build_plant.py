@@ -70,7 +70,7 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     if spec.torque_interface is not None:
         ranges, load, drive = _torque(spec.torque_interface, spec.command)
         joint = ranges.nominal
-        loop = MotionLoop((joint.gain,), (joint.time_constant, Fraction(1)), given=True)
+        loop = MotionLoop((joint.gain,), (joint.time_constant, Fraction(1)), is_stated=True)
     elif spec.followed is not None:
         ranges, loop = _followed(spec.followed, spec.command)
         drive = _drive(spec, loop)
@@ -81,7 +81,7 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
         load = None if motor.load_inertia is None else motor.load_inertia.exact
         stated = None if spec.motion_loop is None else spec.motion_loop.transfer_function
         if stated is not None:
-            loop = MotionLoop(stated.numerator, stated.denominator, given=True)
+            loop = MotionLoop(stated.numerator, stated.denominator, is_stated=True)
     return Plant(ranges.nominal, tuple(build_environments(spec)), ranges, loop, load, drive)
 
 
@@ -89,12 +89,12 @@ def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, Motio
     """Return the motion loop of a robot, and a lag about as slow where it is another."""
     one, G = Fraction(1), robot.transfer_function
     if G is not None:
-        loop = MotionLoop(G.numerator, G.denominator, given=True)
+        loop = MotionLoop(G.numerator, G.denominator, is_stated=True)
         lag = Interval.point(abs(loop.delay) or one)
     else:
         assert robot.time_constant is not None, "a robot has one of them"
         lag = robot.time_constant.interval
-        loop = MotionLoop((one,), (lag.nominal, one), given=True)
+        loop = MotionLoop((one,), (lag.nominal, one), is_stated=True)
     return ActuatorRanges(Interval.point(one), lag, command), loop
 
 

@@ -103,7 +103,7 @@ class AbstractControllerSpec(SpecModel, stronger="neither"):
     # Whether it makes the torques of a robot that takes some.
     makes_torques: ClassVar[bool] = False
     # Whether it keeps a state that stays in the command of other controllers, and decays there.
-    bleeds: ClassVar[bool] = False
+    is_leaky: ClassVar[bool] = False
     # Whether its design has a limit of the stiffness that it may touch.
     limits_stiffness: ClassVar[bool] = False
     # Gains that `design.free` may name, and the key in whose place each may be given.
@@ -242,7 +242,7 @@ class IntegralControllerSpec(AbstractForceSpec):
     """Proportional and integral force controller whose integral bleeds in other modes."""
 
     model_config = _just_one_of(_PROPORTIONAL, _INTEGRAL)
-    bleeds: ClassVar[bool] = True
+    is_leaky: ClassVar[bool] = True
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType(
         {"Kp": "damping_ratio", "Ki": "settling_time"}
     )

@@ -106,7 +106,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
     @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
-        if self.law.remembers or self.law.has_mass:
+        if self.law.has_memory or self.law.has_mass:
             return False
         kinds = zip(self.law.keys, self.law.kinds, strict=True)
         damping = (self.ranges[key] for key, kind in kinds if kind == DAMPING)

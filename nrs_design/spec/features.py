@@ -94,8 +94,8 @@ def _first(found: Iterable[T]) -> T | None:
 
 def _bleeding(spec: Spec) -> str | None:
     """Return a controller with an integral that others leave to bleed."""
-    all_alike = len({c.bleeds for c in spec.controllers.values()}) < 2
-    return None if all_alike else _first(n for n, c in spec.controllers.items() if c.bleeds)
+    all_alike = len({c.is_leaky for c in spec.controllers.values()}) < 2
+    return None if all_alike else _first(n for n, c in spec.controllers.items() if c.is_leaky)
 
 
 def _dwell(spec: Spec) -> str | None:
@@ -113,7 +113,7 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     """Return a controller of a force that takes the velocity, and the first such environment."""
     for name, controller in spec.controllers.items():
         laws = ((key, spec.environments.get(key)) for key in touched_in(controller.contacts))
-        damped = (key for key, e in laws if e and not (e.is_spring or e.law.remembers))
+        damped = (key for key, e in laws if e and not (e.is_spring or e.law.has_memory))
         if controller.holds_force and (key := _first(damped)):
             return name, key
     return None
@@ -150,7 +150,7 @@ CONSTANT_MOTOR = _named(
 LOADED = _given("LOADED")
 
 HAND = _contacted("HAND", lambda e: e.law.has_mass)
-MEMORY = _contacted("MEMORY", lambda e: e.law.remembers)
+MEMORY = _contacted("MEMORY", lambda e: e.law.has_memory)
 RESTLESS = _contacted("RESTLESS", lambda e: not e.law.has_rest)
 PRELOADED = _contacted("PRELOADED", lambda e: e.preloaded)
 OTHER_TISSUE = _named("OTHER_TISSUE", lambda s: len(s.touched) > 1)
@@ -160,7 +160,7 @@ TISSUE_RANGE = _contacted("TISSUE_RANGE", lambda e: not e.fixed)
 AT_ONCE = _controller(
     "AT_ONCE", lambda c: any(not isinstance(contact, str) for contact in c.contacts)
 )
-HEAVY_AT_ONCE = _at_once("HEAVY_AT_ONCE", lambda e: e.law.remembers or e.law.has_mass)
+HEAVY_AT_ONCE = _at_once("HEAVY_AT_ONCE", lambda e: e.law.has_memory or e.law.has_mass)
 LAGGING_AT_ONCE = _at_once("LAGGING_AT_ONCE", lambda e: not e.is_losable)
 SEVERAL_CONTACTS = _named(
     "SEVERAL_CONTACTS",

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import NamedTuple
 
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec import features as has
 from nrs_design.spec.check import NO_SUCH, Reference, Row, each, refuse
@@ -233,7 +233,9 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     Row(
         "controllers.{0}.type",
         lambda s: (
-            n for n, c in s.controllers.items() if (s.takes is Takes.TORQUE) != c.makes_torques
+            n
+            for n, c in s.controllers.items()
+            if (s.takes is CommandInterface.TORQUE) != c.makes_torques
         ),
         "{0!r} does not fit the drive: controllers of type torque-impedance are for a "
         "torque_interface, and it takes no others",
@@ -288,7 +290,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     ),
     Row(
         "anti_windup",
-        lambda s: s.anti_windup is not None and not any(c.bleeds for c in s.controllers.values()),
+        lambda s: s.anti_windup is not None and not any(c.is_leaky for c in s.controllers.values()),
         "anti_windup without a pi-force controller, the only kind with an integral to cut off",
         "remove anti_windup",
     ),

@@ -11,7 +11,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, ValidationInfo, field_validator
 
 from nrs_design.models.axis import AxisType
-from nrs_design.models.drive import COMMANDS, Takes
+from nrs_design.models.drive import COMMANDS, CommandInterface
 from nrs_design.spec import motion
 from nrs_design.spec.certification import SearchExtent
 from nrs_design.spec.check import Row
@@ -43,7 +43,9 @@ MAX_ENTRIES = 64
 # The contact in the names of the modes of free motion.
 FREE = "free"
 # Robots without a motor of the user's, by what they take.
-INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes for takes in Takes})
+INTERFACES: Mapping[str, CommandInterface] = MappingProxyType(
+    {f"{takes}_interface": takes for takes in CommandInterface}
+)
 DriveSpec = motion.ActuatorSpec | motion.FollowingSpec | motion.TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
@@ -220,7 +222,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         return self.velocity_interface or self.position_interface
 
     @property
-    def takes(self) -> Takes | None:
+    def takes(self) -> CommandInterface | None:
         """What the robot takes; None for the commands of a motor."""
         return next((INTERFACES[key] for key in self.drives if key in INTERFACES), None)
 

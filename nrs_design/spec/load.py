@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from pydantic import ValidationError
 
 from nrs_design.errors import Fault, SpecError
-from nrs_design.models.axis import about
+from nrs_design.models.axis import axis_context
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Mapping,
@@ -178,7 +178,7 @@ def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
 def _validated(model: type[Any], root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Any:
     found: tuple[Fault, ...] = ()
     said = to_data(root)
-    with about(said.get("axis") if isinstance(said, dict) else None):
+    with axis_context(said.get("axis") if isinstance(said, dict) else None):
         try:
             spec = model.model_validate(said)
         except ValidationError as error:

@@ -25,7 +25,7 @@ def tissue() -> Iterator[Result]:
     for time, printed in zip(times, tissues.values(), strict=True):
         law, maxwell = KelvinBoltzmann(*printed["boltzmann"]), Maxwell(*printed["maxwell"])
         yield law.eta
-        yield KelvinBoltzmann.from_eta(*law.eta).values
+        yield KelvinBoltzmann.create_from_eta(*law.eta).values
         # What k2 and the elastic fit together imply.
         elastic, relaxed = printed["elastic"], law.eta[0]
         stiffness = ", ".join(format_number(k) for k in (law.stiffness, elastic, relaxed))
@@ -41,7 +41,7 @@ def tissue() -> Iterator[Result]:
 
 def specimens() -> Iterable[Result]:
     """Recompute the means; the fits themselves rest on records that are not printed."""
-    hand = tuple(Elastic(k).at_pivot(ARM).stiffness for k in (1002 - 568, 1002, 1002 + 568))
+    hand = tuple(Elastic(k).convert_to_pivot(ARM).stiffness for k in (1002 - 568, 1002, 1002 + 568))
     fits = read_data("tables.yaml")["specimens"].values()
     return (*(found for printed in fits for found in _specimen_rows(printed)), hand)
 
@@ -49,14 +49,14 @@ def specimens() -> Iterable[Result]:
 def _specimen_rows(printed: dict[str, Any]) -> Iterator[Result]:
     mean = fmean(printed["elastic"])
     yield mean
-    yield Elastic(mean).at_pivot(ARM).stiffness
+    yield Elastic(mean).convert_to_pivot(ARM).stiffness
     times = [b / k for k, b in printed["voigt"]]
     yield Recomputed(", ".join(map(format_number, times)), max(times) < PERIOD / 5)
     for eta1, eta2, eta3 in printed["boltzmann"]:
         exists = eta2 / eta3 > eta1
         found = f"no such law: eta2/eta3 = {eta2 / eta3:.4g} N/m"
         if exists:
-            law = KelvinBoltzmann.from_eta(eta1, eta2, eta3)
+            law = KelvinBoltzmann.create_from_eta(eta1, eta2, eta3)
             found = ", ".join(format_number(value) for value in law.values)
         yield Recomputed(found, exists == (eta3 < PERIOD / 100))
     # The largest errors are above the root mean square errors.

@@ -11,10 +11,10 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
-from nrs_design.controllers.parts import BEYOND, PROPORTIONAL, StepGain, StepPart
+from nrs_design.controllers.parts import DEFAULT_LIMIT, PROPORTIONAL, StepGain, StepPart
 from nrs_design.controllers.taylor import exponential_between
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command
@@ -22,10 +22,12 @@ from nrs_design.spec.controllers import Command
 LAG = StepPart(
     "lag",
     (StepGain("kept_share", "p", "1"), StepGain("taken_share", "q", "rad/(N*m)")),
-    states=(Value("lagged", "x", "rad", BEYOND, "lagged correction", stored="lagged [rad]"),),
+    states=(
+        Value("lagged", "x", "rad", DEFAULT_LIMIT, "lagged correction", stored="lagged [rad]"),
+    ),
     adds="lagged",
     total="placed",
-    after=(
+    state_operations=(
         Operation("lag_kept", "multiply", "kept_share", "lagged"),
         Operation("lag_taken", "multiply", "taken_share", "lack"),
         Operation("next_lagged", "add", "lag_kept", "lag_taken"),
@@ -69,10 +71,10 @@ class LagForce(AbstractCompliantLaw[Any]):
         """Discretize exactly for a force that is held."""
         p, _ = exponential_between(-period / self.tau)
         shares = {"kept_share": p, "taken_share": self.Kp * (1 - p)}
-        return DiscreteLaw(type(self), {name: to_float32(n) for name, n in shares.items()})
+        return DiscreteLaw(type(self), {name: round_float32(n) for name, n in shares.items()})
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+    def parts(cls, number_names: Collection[str], *, has_position: bool) -> tuple[StepPart, ...]:
         """Return the force error of all force controllers, and the lag."""
         return PROPORTIONAL, LAG
 

@@ -17,7 +17,7 @@ FORMS = {
 
 def linear_forms(law, mode, given):
     """Return every value of a step as a linear form, without rounding or saturation."""
-    held = {c.name: [c.of(mode)] for c in law.coefficients}
+    held = {c.name: [c.number(mode)] for c in law.coefficients}
     found = law.read(held | given, FORMS)
     return {name: form for name, form in found.items() if name not in held}
 

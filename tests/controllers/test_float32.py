@@ -12,8 +12,8 @@ from nrs_design.controllers.float32 import (
     float32_not_below,
     is_float32,
     neighbors,
+    round_float32,
     round_significant,
-    to_float32,
 )
 from nrs_design.errors import DesignError
 from tests.tables import rows
@@ -23,19 +23,19 @@ LARGEST = (2 - Fraction(1, 2**23)) * 2**127
 
 @pytest.mark.parametrize(("value", "rounded"), rows(__file__, "test_known_numbers"))
 def test_known_numbers(value, rounded):
-    assert to_float32(Fraction(value)) == Fraction(rounded)
-    assert exact_decimal(to_float32(Fraction(value))) == rounded
+    assert round_float32(Fraction(value)) == Fraction(rounded)
+    assert exact_decimal(round_float32(Fraction(value))) == rounded
 
 
 @given(st.floats(width=64, allow_nan=False, min_value=-3e38, max_value=3e38))
 def test_agrees_with_the_hardware(value):
-    assert to_float32(Fraction(value)) == Fraction(float(np.float32(value)))
+    assert round_float32(Fraction(value)) == Fraction(float(np.float32(value)))
 
 
 def test_rounded_once():
     """By way of a double, 1 + 2^-24 + 2^-60 would become 1 + 2^-24, a tie, and then 1."""
     value = 1 + Fraction(1, 2**24) + Fraction(1, 2**60)
-    assert to_float32(value) == 1 + Fraction(1, 2**23)
+    assert round_float32(value) == 1 + Fraction(1, 2**23)
 
 
 @given(st.binary(min_size=4, max_size=4))
@@ -44,7 +44,7 @@ def test_every_single_precision_number_is_one(pattern):
     if np.isfinite(value):
         exact = Fraction(value)
         assert is_float32(exact)
-        assert to_float32(exact) == exact
+        assert round_float32(exact) == exact
         assert Fraction(exact_decimal(exact)) == exact
 
 
@@ -52,7 +52,7 @@ def test_every_single_precision_number_is_one(pattern):
 def test_nearest(value):
     if abs(value) > LARGEST:
         return
-    rounded = to_float32(value)
+    rounded = round_float32(value)
     step = abs(rounded) * Fraction(1, 2**23) + Fraction(1, 2**149)
     assert abs(rounded - value) <= step / 2
     assert is_float32(rounded)
@@ -61,16 +61,16 @@ def test_nearest(value):
 @pytest.mark.parametrize("exponent", [-149, -150, -200, -5000])
 def test_smallest_numbers(exponent):
     value = Fraction(2) ** exponent
-    assert to_float32(value) == (value if exponent == -149 else 0)
-    assert to_float32(-3 * Fraction(2) ** -150) == -(Fraction(2) ** -148)
+    assert round_float32(value) == (value if exponent == -149 else 0)
+    assert round_float32(-3 * Fraction(2) ** -150) == -(Fraction(2) ** -148)
 
 
 def test_beyond_the_range():
-    assert to_float32(LARGEST) == LARGEST
+    assert round_float32(LARGEST) == LARGEST
     for value in (Fraction(2) ** 128, -(Fraction(2) ** 128), Fraction(10) ** 5000):
         assert not is_float32(value)
         with pytest.raises(DesignError, match="single precision"):
-            to_float32(value)
+            round_float32(value)
 
 
 @pytest.mark.parametrize("text", ["0.1", "2.15", "1/3", "16777217"])

@@ -29,7 +29,7 @@ def test_a_spring_is_a_gain_only_where_there_is_one():
     sprung = Admittance(Fraction(1), Fraction(2), Fraction(3))
     assert sprung.gains == {"Mt": 1, "Bt": 2, "Kt": 3}
     for law in (sprung, Admittance(Fraction(1), Fraction(2))):
-        assert Admittance.of(law.gains) == law
+        assert Admittance.create(law.gains) == law
 
 
 @pytest.mark.parametrize(

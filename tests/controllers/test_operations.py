@@ -33,6 +33,6 @@ def test_a_list_that_does_not_fit_is_refused():
 
 def test_a_coefficient_of_a_mode():
     several = Coefficient("a", "a", "1", (ONE, 2 * ONE))
-    assert (several.by_mode, TWO.by_mode) == (True, False)
-    assert [several.of(mode) for mode in (0, 1)] == [1, 2]
-    assert [TWO.of(mode) for mode in (0, 1)] == [2, 2]
+    assert (several.differs_by_mode, TWO.differs_by_mode) == (True, False)
+    assert [several.number(mode) for mode in (0, 1)] == [1, 2]
+    assert [TWO.number(mode) for mode in (0, 1)] == [2, 2]

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.parts import DEFAULT_LIMIT
 from nrs_design.controllers.shipped import shipped_law, step_limits
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
@@ -55,14 +55,14 @@ def test_limits_come_from_the_spec_and_are_not_above_it(tmp_path):
     assert (kept["angle"], kept["reference"], kept["torque"]) == (
         limits.angle,
         limits.angle,
-        BEYOND,
+        DEFAULT_LIMIT,
     )
 
 
 def test_without_limits_inputs_are_held_against_nonsense_only(tmp_path):
     found = run_design(read_spec(SOFT_TISSUE))
     limits = step_limits(found.spec)
-    assert (limits.angle, limits.command) == (BEYOND, None)
+    assert (limits.angle, limits.command) == (DEFAULT_LIMIT, None)
     assert law_of(found).outputs == {"command": "command"}
 
 
@@ -72,7 +72,7 @@ def test_coefficients_are_those_of_the_sampled_design():
     assert law.modes == ("insertion", "withdrawal")
     for k, controller in enumerate(found.design.controllers):
         wanted = controller.law.discretize(PERIOD, "exact").numbers
-        assert {name: law.coefficient[name].of(k) for name in wanted} == wanted
+        assert {name: law.coefficient[name].number(k) for name in wanted} == wanted
     assert law_of(found, 2 * PERIOD) != law
 
 
@@ -117,7 +117,10 @@ def test_thresholds_ship_as_a_mode_logic():
     law = law_of(found)
     assert law.logic is not None
     assert law.logic.start == law.modes.index("insertion")
-    assert law.logic.stays == StepLogic.of(found.spec.mode_logic, law.modes, PERIOD).stays
+    assert (
+        law.logic.hold_samples
+        == StepLogic.create(found.spec.mode_logic, law.modes, PERIOD).hold_samples
+    )
     assert law_of(run_design(read_spec(SOFT_TISSUE))).logic is None
 
 
@@ -135,8 +138,8 @@ def test_a_spring_beside_other_controllers_draws_to_the_commanded_position():
     for mode, controller in enumerate(controllers):
         moves = isinstance(controller.law, Admittance)
         forms = linear_forms(law, mode, given)
-        assert numbers["Kt"].of(mode) == moves
-        assert forms["pushed"][place] == numbers["b"].of(mode) * moves
+        assert numbers["Kt"].number(mode) == moves
+        assert forms["pushed"][place] == numbers["b"].number(mode) * moves
 
 
 def test_inertia_of_some_controllers_is_refused(tmp_path):

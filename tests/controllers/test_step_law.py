@@ -8,19 +8,19 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import (
     Admittance,
     IntegralForce,
     PositionControl,
     ProportionalForce,
 )
-from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.parts import DEFAULT_LIMIT
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from tests.controllers.roundings import term_counts
 
-PERIOD, IDLE = Fraction(1, 500), to_float32(Fraction("0.96"))
+PERIOD, IDLE = Fraction(1, 500), round_float32(Fraction("0.96"))
 MOVING = Admittance(Fraction(1, 128), Fraction(17, 8))
 SPRUNG, STATIC = replace(MOVING, Kt=Fraction(1, 2)), replace(MOVING, Mt=Fraction(0))
 FORCE, POSITION = ProportionalForce(Fraction(1, 64)), PositionControl()
@@ -86,5 +86,5 @@ def test_limits(laws):
     kept = {value.name: value.limit for value in limited.values}
     angles = kept.keys() & {"angle", "position", "reference", "offset", "integral"}
     assert {kept[name] for name in angles} == {Fraction(1, 2)}
-    assert kept["error_before"] == (1 if laws == (MOVING,) else 2 * BEYOND)
-    assert kept["torque"] == BEYOND
+    assert kept["error_before"] == (1 if laws == (MOVING,) else 2 * DEFAULT_LIMIT)
+    assert kept["torque"] == DEFAULT_LIMIT

@@ -32,21 +32,23 @@ def spec(hold=None, above="0.5 rad/s"):
 
 
 def test_thresholds_are_rounded_away_from_each_other():
-    logic = StepLogic.of(spec(above="0.1 rad/s"), MODES, PERIOD)
+    logic = StepLogic.create(spec(above="0.1 rad/s"), MODES, PERIOD)
     bounds = [bound for switch in logic.switches for bound in switch.bounds]
     assert all(is_float32(bound.threshold) for bound in bounds)
-    found = next(bound for bound in bounds if bound.above and bound.signal == "command")
+    found = next(bound for bound in bounds if bound.is_lower and bound.signal == "command")
     assert Fraction(1, 10) < found.threshold < Fraction("0.10000001")
-    assert (logic.start, logic.signals, logic.stays[2]) == (1, ("command", "torque"), 0)
+    assert (logic.start, logic.signals, logic.hold_samples[2]) == (1, ("command", "torque"), 0)
 
 
 @pytest.mark.parametrize(("hold", "samples"), [("50 ms", 52), ("51 ms", 53), ("125 ms", 128)])
 def test_times_are_rounded_up_to_samples(hold, samples):
-    assert StepLogic.of(spec(hold={"insertion": hold}), MODES, PERIOD).stays[1] == samples
+    assert (
+        StepLogic.create(spec(hold={"insertion": hold}), MODES, PERIOD).hold_samples[1] == samples
+    )
 
 
 def test_the_count_ends_and_a_mode_that_there_is_not_is_the_first():
-    logic = StepLogic.of(spec(), MODES, PERIOD)
+    logic = StepLogic.create(spec(), MODES, PERIOD)
     quiet = {"command": 0.0, "torque": 0.1}
     assert logic.step(0, LONGEST, quiet) == (0, LONGEST)
     assert logic.step(3, 7, quiet) == (1, 1)
@@ -55,5 +57,5 @@ def test_the_count_ends_and_a_mode_that_there_is_not_is_the_first():
 
 def test_a_time_that_cannot_be_counted_is_refused():
     with pytest.raises(DesignError, match="32 bits") as caught:
-        StepLogic.of(spec(hold="50 s"), MODES, Fraction(1, 10**9))
+        StepLogic.create(spec(hold="50 s"), MODES, Fraction(1, 10**9))
     assert caught.value.at == ("mode_logic", "hold")

@@ -14,8 +14,8 @@ from tests.tables import entry
 
 PERIOD, NOISE, RATE = 1e-3, 0.1, 40.0
 SPEC = ThresholdLogicSpec.model_validate(entry(__file__, "SPEC"))
-LOGIC = StepLogic.of(SPEC, ("in", "out"), Fraction(1, 1000))
-NO_TIMER = replace(LOGIC, stays=(0, 0))
+LOGIC = StepLogic.create(SPEC, ("in", "out"), Fraction(1, 1000))
+NO_TIMER = replace(LOGIC, hold_samples=(0, 0))
 
 
 def switch_times(logic, values):

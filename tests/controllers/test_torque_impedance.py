@@ -10,7 +10,7 @@ from nrs_design.controllers.replica import step
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.errors import DesignError
 from nrs_design.loop.program import kinds_of, list_law
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 
 F = Fraction
 T = F(1, 1000)
@@ -24,13 +24,15 @@ def test_a_wanted_inertia_scales_spring_damper_and_force():
     assert SHAPED.gains == {"K": 30, "D": 3, "R": F(1, 2)}
     assert PLAIN.discretize(T, "exact").numbers == {"Kp": 30, "Kd_over_T": 3000}
     assert SHAPED.discretize(T, "exact").numbers == {"Kp": 60, "Kd_over_T": 6000, "Kf_torque": 1}
-    assert TorqueImpedance.of(SHAPED.gains) == SHAPED
+    assert TorqueImpedance.create(SHAPED.gains) == SHAPED
 
 
 @pytest.mark.parametrize("limit", [None, F(10)])
 def test_the_program_is_the_formula(limit):
     laws = {"plain": PLAIN.discretize(T, "exact"), "shaped": SHAPED.discretize(T, "exact")}
-    frame = StepFrame(ZERO, ZERO, limits=StepLimits(command=limit), takes=Takes.TORQUE)
+    frame = StepFrame(
+        ZERO, ZERO, limits=StepLimits(command=limit), interface=CommandInterface.TORQUE
+    )
     law = build_law(frame, laws)
     assert [value.name for value in law.inputs] == ["angle", "torque", "position"]
     assert [value.name for value in law.states] == ["error_before"]
@@ -50,7 +52,7 @@ def test_the_program_is_the_formula(limit):
 def test_its_roundings_are_counted():
     """One for the error, two and three for the terms of the PD, and those of the force."""
     kinds = kinds_of([SHAPED.discretize(T, "exact")])
-    counts = list_law(0, kinds, Takes.TORQUE).all_counts
+    counts = list_law(0, kinds, CommandInterface.TORQUE).all_counts
     assert counts == {"e": 1, "Kp e": 3, "D (e - e before)": 4, "Kf F": 3}
 
 

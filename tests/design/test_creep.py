@@ -79,7 +79,7 @@ def test_simulated(tmp_path, spring):
     period, law = Fraction(1, 500), found.design.controllers[1].law
     low_pass = found.design.sensor.filter.discretize(period)
     motion, held = found.design.motion, law.discretize(period, "exact")
-    step = StepFrame(motion.Kp, motion.over(period), low_pass)
+    step = StepFrame(motion.Kp, motion.difference_gain(period), low_pass)
     frame = frame_of(period, step, (held,), 1, Fraction("0.0351"))
     rows = frame.rows(held, 1, {"Km": Fraction("4.8417e-4")})
     n = len(frame.states)

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.float32 import is_float32, to_float32
+from nrs_design.controllers.float32 import is_float32, round_float32
 from nrs_design.design.analysis import design_controllers, root_locus_design
 from nrs_design.design.laws.impedance import desired_impedance
 from nrs_design.errors import DesignError
@@ -52,12 +52,12 @@ def test_rounding_never_leaves_the_bounds():
     text = SOFT_TISSUE.read_text().replace("max: 20 N*m*s/rad", "max: 0.994 N*m*s/rad")
     found = design(text.replace("significant_digits: 3", "significant_digits: 1"))
     for controller in found.controllers:
-        assert controller.law.Bt <= to_float32(Fraction("0.994"))
+        assert controller.law.Bt <= round_float32(Fraction("0.994"))
 
 
 def test_force_gain_as_given_and_from_a_damping_ratio():
     text = FORCE_LIMIT.read_text()
-    assert design(text).controllers[1].law.Kp == to_float32(Fraction("0.02"))
+    assert design(text).controllers[1].law.Kp == round_float32(Fraction("0.02"))
     asked = text.replace("proportional_gain: 0.02 rad/(N*m)", "damping_ratio: 0.741")
     assert float(design(asked).controllers[1].law.Kp) == pytest.approx(0.02, rel=0.02)
 

@@ -59,7 +59,7 @@ def study(folder, export, spec, *, damping=0.0):
         "TORQUE_NOISE": said.torque_noise.si,
         "ANGLE_NOISE": said.angle_noise.si,
         "MOVES": ["fixed", "free", "touched"].index(said.surface),
-        "KEPT": int(sector.kept),
+        "KEPT": int(sector.contact_maintained),
         "DRIFT": float(sector.surface_speed),
         "SPEED": 1.0 if sector.speed is None else float(sector.speed),
         "SKEW": 0.0 if said.skew is None else said.skew.si,

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import (
     Admittance,
     IntegralForce,
@@ -23,11 +23,11 @@ from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.self_test import program_macro, self_test
 from nrs_design.exporters.text import CNames
-from nrs_design.models.drive import Takes
+from nrs_design.models.drive import CommandInterface
 from tests.support import program_named
 
 PERIOD = Fraction(1, 500)
-MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
+MOTION = ProportionalDerivative(round_float32(Fraction("117359.43")), Fraction(2060))
 M4F = Path(__file__).parent / "board"
 STRICT = (
     "-std=c99",
@@ -45,13 +45,15 @@ def source_file(name: str) -> str:
 
 
 def frame(low_pass=None, limits=None, takes=None) -> StepFrame:
-    return StepFrame(MOTION.Kp, MOTION.over(PERIOD), low_pass, limits or StepLimits(), takes)
+    return StepFrame(
+        MOTION.Kp, MOTION.difference_gain(PERIOD), low_pass, limits or StepLimits(), takes
+    )
 
 
 def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None, takes=None) -> StepLaw:
     """Build two admittances of the thesis robot above its motion controller."""
     laws = {
-        name: Admittance(*(to_float32(Fraction(gain)) for gain in (Mt, Bt, spring))).discretize(
+        name: Admittance(*(round_float32(Fraction(gain)) for gain in (Mt, Bt, spring))).discretize(
             PERIOD, method
         )
         for (name, Bt), spring in zip(
@@ -62,16 +64,19 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None, takes
     return build_law(frame(low_pass, limits, takes), laws)
 
 
-PLACED = {"position": PositionControl(), "force": ProportionalForce(to_float32(Fraction("0.02")))}
-ADMITTANCE = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
-INTEGRAL = IntegralForce(to_float32(Fraction("0.02")), Fraction(1, 2))
+PLACED = {
+    "position": PositionControl(),
+    "force": ProportionalForce(round_float32(Fraction("0.02"))),
+}
+ADMITTANCE = Admittance(round_float32(Fraction("0.01")), round_float32(Fraction("2.15")))
+INTEGRAL = IntegralForce(round_float32(Fraction("0.02")), Fraction(1, 2))
 LAG = LowPass(1, Fraction(200)).discretize(PERIOD)
 
 
 def mixture(low_pass=None, limits=None, takes=None, **others) -> StepLaw:
     """Build controllers of position and force with others beside them."""
     laws = {name: one.discretize(PERIOD, "exact") for name, one in {**PLACED, **others}.items()}
-    idle = (to_float32(Fraction("0.96")),) if others else ()
+    idle = (round_float32(Fraction("0.96")),) if others else ()
     return build_law(frame(low_pass, limits, takes), laws, *idle)
 
 
@@ -87,10 +92,12 @@ LAWS = {
     "integral": mixture(insertion=ADMITTANCE, hold=INTEGRAL),
     "clamped": mixture(limits=CLAMPED, hold=INTEGRAL),
     "mixed, spring": mixture(LAG, insertion=SPRUNG),
-    "positions": mixture(takes=Takes.POSITION),
-    "positions, mixed": mixture(takes=Takes.POSITION, insertion=SPRUNG),
-    "velocities, spring": law(Kt=("0.5", "0"), order=1, takes=Takes.VELOCITY),
-    "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
+    "positions": mixture(takes=CommandInterface.POSITION),
+    "positions, mixed": mixture(takes=CommandInterface.POSITION, insertion=SPRUNG),
+    "velocities, spring": law(Kt=("0.5", "0"), order=1, takes=CommandInterface.VELOCITY),
+    "limits": law(
+        limits=StepLimits(Fraction(1, 2), round_float32(Fraction("0.13")), Fraction(4000))
+    ),
 }
 
 

@@ -49,9 +49,9 @@ def test_cases_hold_what_decides(shipped):
             drawn = {int(case[place], 16) for case in cases}
             assert {bits - 1, bits, bits + 1, *LOGIC_SPECIAL} <= drawn
     drawn = {tuple(case[:2]) for case in cases}
-    for mode, stay in enumerate(logic.stays):
+    for mode, stay in enumerate(logic.hold_samples):
         assert {(mode, n) for n in (0, max(stay - 1, 0), stay, stay + 1, LONGEST)} <= drawn
-    assert {case[0] for case in cases} == set(range(len(logic.stays) + 1))
+    assert {case[0] for case in cases} == set(range(len(logic.hold_samples) + 1))
     switched = {(case[0], case[-2]) for case in cases if case[0] != case[-2]}
     assert {(s.source, s.target) for s in logic.switches} <= switched
 
@@ -87,6 +87,6 @@ def test_every_number_of_the_logic_is_in_the_header(shipped):
     text = header_text(Program(record, law, names))
     macros = re.findall(rf"#define {names.upper}_LOGIC_\w+ (\S+)", text)
     bounds = [literal(b.threshold) for s in law.logic.switches for b in s.bounds]
-    stays = [f"{number}U" for number in (law.logic.start, *law.logic.stays)]
+    stays = [f"{number}U" for number in (law.logic.start, *law.logic.hold_samples)]
     assert sorted(macros) == sorted([*bounds, *stays])
     assert "The proof does not rest on the signals" in " ".join(text.replace("\n *", " ").split())

@@ -157,10 +157,10 @@ def leaves_a_surface(sector, readings):
     for angle, torque in readings:
         least, most = torque - sector.torque_noise, torque + sector.torque_noise
         near, far = angle - sector.angle_noise, angle + sector.angle_noise
-        if not sector.kept and most < 0:
+        if not sector.contact_maintained and most < 0:
             return most
         low = max(low, near - max(most / sector.low, most / sector.high))
-        if sector.kept or least > 0:
+        if sector.contact_maintained or least > 0:
             high = min(high, far - min(least / sector.low, least / sector.high))
     return high - low
 
@@ -184,7 +184,7 @@ def test_it_is_the_exact_intersection(monitor, case):
         readings = []
         for depth, factor, noise in samples:
             k = factor * ends[noise > 0]
-            deep = 0.007 * depth if sector.kept else max(0.007 * depth, 0.0)
+            deep = 0.007 * depth if sector.contact_maintained else max(0.007 * depth, 0.0)
             angle = np.float32(centre + 0.007 * depth + float(sector.angle_noise) * noise)
             torque = np.float32(k * deep - float(sector.torque_noise) * noise)
             readings.append((angle, torque))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.text import CNames, block_comment, literal
@@ -53,7 +53,7 @@ def test_literals_are_exact(value):
     text = literal(Fraction(value))
     assert Fraction(float.fromhex(text.strip("()").removesuffix("F"))) == Fraction(value)
     assert text.strip("()").endswith("F")
-    assert to_float32(Fraction(value)) == Fraction(value)
+    assert round_float32(Fraction(value)) == Fraction(value)
 
 
 @pytest.mark.slow

@@ -86,7 +86,7 @@ def test_a_mode_that_must_be_left_may_be_unstable(examiner, entry, status, words
 
 def ranges(highest, limit):
     examiner = Examiner(read_spec(SOFT_TISSUE))
-    loop = SimpleNamespace(contact=SimpleNamespace(remembers=False))
+    loop = SimpleNamespace(contact=SimpleNamespace(has_memory=False))
     item = SimpleNamespace(
         name="insertion",
         given=examiner.loaded.spec.controllers["insertion"],

@@ -16,7 +16,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.loop.calendar import CommandTiming
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.drive import Takes, motor_drive, velocity_drive
+from nrs_design.models.drive import CommandInterface, motor_drive, velocity_drive
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import close_motion_loop
 from tests.loop.frames import Frame
@@ -42,7 +42,7 @@ def held_in(timing, *, closed):
         motor = motor_drive(Interval.point(KM), Interval.point(TAU))
         return motor, StepFrame(KP, KD / timing.period)
     drive = velocity_drive(close_motion_loop(Actuator(KM, TAU), KP, KD))
-    step = StepFrame(Fraction(0), Fraction(0), takes=Takes.VELOCITY)
+    step = StepFrame(Fraction(0), Fraction(0), interface=CommandInterface.VELOCITY)
     return drive, step
 
 

@@ -43,7 +43,7 @@ class Frame:
         Of a drive that is known, at the gain that is given, but for the last digits.
         """
         contact = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        flow = HeldDrive(self.drive.at(values), self.timing).flow()[0].rows
+        flow = HeldDrive(self.drive.fix_values(values), self.timing).flow()[0].rows
         period = self.loop.period(self.loop.sample(law, delay, contact, turn), flow)
         return [*period.moves, *period.sizes, period.command]
 

@@ -23,7 +23,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import (
     LOAD,
     MEMORY,
-    Takes,
+    CommandInterface,
     lagging_drive,
     motor_drive,
     position_drive,
@@ -402,12 +402,12 @@ def test_free_motion_is_the_same_wherever_it_is():
     """No state but the deflection sees it: a robot in the air has no place."""
     law = Admittance.discrete(F(65, 100), F(16, 100), T)
     for drive, takes in (
-        (position_drive(SECOND), Takes.POSITION),
-        (lagging_drive(Interval(F(3, 100), F(1, 50), F(1, 25))), Takes.POSITION),
-        (velocity_drive(ZEROED), Takes.VELOCITY),
+        (position_drive(SECOND), CommandInterface.POSITION),
+        (lagging_drive(Interval(F(3, 100), F(1, 50), F(1, 25))), CommandInterface.POSITION),
+        (velocity_drive(ZEROED), CommandInterface.VELOCITY),
     ):
         timing = CommandTiming(T, T / 3, F(4, 3) * T)
-        frame = Frame(timing, drive, StepFrame(F(0), F(0), takes=takes), (law,), 1)
+        frame = Frame(timing, drive, StepFrame(F(0), F(0), interface=takes), (law,), 1)
         n = len(frame.states)
         rows = frame.rows(law, 1, {})[:n]
         assert [row[n - 1] for row in rows] == [*(0,) * (n - 1), 1]

@@ -11,7 +11,7 @@ from flint import fmpq, fmpq_mat
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline.certification import search_limits
 from nrs_design.pipeline.runs import run_certification
@@ -180,7 +180,7 @@ def test_a_constant_command_ends_in_the_force_of_the_damping(Mt, tolerance, load
 
     Thesis 6.2; the motor needs an error for that where the contact loads it, but no other force.
     """
-    Bt = to_float32(Fraction("2.15"))
+    Bt = round_float32(Fraction("2.15"))
     system = thesis_robot(SOFT, ("2.15",), Mt, tolerance, load, **COMMAND)
     (channel,) = system.channels
     force = system.outputs[0]

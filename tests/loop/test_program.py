@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers import laws as module
 from nrs_design.controllers import step_law
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.operations import Operation
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.sensor import DiscreteLowPass
@@ -59,7 +59,7 @@ SINGLE = (
 
 
 def rounded(law: module.DiscreteLaw) -> module.DiscreteLaw:
-    return module.DiscreteLaw(law.law, {name: to_float32(n) for name, n in law.numbers.items()})
+    return module.DiscreteLaw(law.law, {name: round_float32(n) for name, n in law.numbers.items()})
 
 
 STREAMED = ((_law("1.04"),), (module.Admittance.discrete(None, Fraction(3, 8), PERIOD),))
@@ -83,8 +83,8 @@ def test_single_precision_never_leaves_the_roundings(laws, motion, order):
     rng, idle, nearest = np.random.default_rng(14), Fraction(15, 16), Fraction(0)
     laws = tuple(map(rounded, laws))
     p, q = Fraction(3, 5), Fraction(2, 5)
-    low_pass = DiscreteLowPass(order, to_float32(p), to_float32(q)) if order else None
-    step_frame = replace(motion, Kp=to_float32(motion.Kp), low_pass=low_pass)
+    low_pass = DiscreteLowPass(order, round_float32(p), round_float32(q)) if order else None
+    step_frame = replace(motion, Kp=round_float32(motion.Kp), low_pass=low_pass)
     frame = frame_of(PERIOD, step_frame, laws, 1, TAU, idle)
     law = build_law(step_frame, {str(i): one for i, one in enumerate(laws)}, idle)
     n, values = len(frame.states), {"Km": KM}

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.controllers.laws import LAWS
 from nrs_design.errors import InternalError, SpecError
-from nrs_design.models.axis import AxisType, about, axis_with, current, labelled, unit
+from nrs_design.models.axis import AxisType, axis_context, current, find_axis, labelled, unit
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 from nrs_design.spec.units import parse_unit
@@ -36,20 +36,20 @@ def test_a_unit_that_nobody_knows_is_never_passed_on():
 
 
 def test_states_carry_their_axis():
-    assert SLIDE.named("vm [rad/s]") == "vm [m/s]"
-    assert SLIDE.named("k limit [N·m/rad], worst") == "k limit [N/m], worst"
-    assert SLIDE.named("xp2") == "xp2"
-    assert axis_with(["e [m]", "omega [m/s]"]) is SLIDE
-    assert axis_with(["e [rad]", "F 1 before [N*m]"]) is AxisType.ROTARY
+    assert SLIDE.label("vm [rad/s]") == "vm [m/s]"
+    assert SLIDE.label("k limit [N·m/rad], worst") == "k limit [N/m], worst"
+    assert SLIDE.label("xp2") == "xp2"
+    assert find_axis(["e [m]", "omega [m/s]"]) is SLIDE
+    assert find_axis(["e [rad]", "F 1 before [N*m]"]) is AxisType.ROTARY
 
 
 def test_words_are_about_one_axis_at_a_time():
     assert unit("N*m") == "N*m"
-    with about("prismatic"):
+    with axis_context("prismatic"):
         assert (unit("N*m"), labelled("Torque [N m]"), current().fine) == ("N", "Torque [N]", 1000)
-        with about(AxisType.ROTARY):
+        with axis_context(AxisType.ROTARY):
             assert unit("N*m") == "N*m"
-        with about({"no": "axis"}):
+        with axis_context({"no": "axis"}):
             assert current() is AxisType.ROTARY
         assert current() is SLIDE
     assert current() is AxisType.ROTARY

@@ -103,6 +103,6 @@ def test_a_robot_that_rests_elsewhere_is_refused():
 def test_ranges_are_stretched_and_stay_positive():
     drive = torque_drive(Interval(F(2), F(1), F(3)), Interval.point(F(1)))
     assert drive.scaled(F(1, 2)).ranges["J"] == Interval(F(2), F(3, 2), F(5, 2))
-    assert drive.at({"J": F(3)}).ranges["J"] == Interval.point(F(3))
+    assert drive.fix_values({"J": F(3)}).ranges["J"] == Interval.point(F(3))
     with pytest.raises(AssemblyError, match="does not stay physical"):
         drive.scaled(F(3))

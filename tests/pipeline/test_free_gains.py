@@ -7,8 +7,8 @@ from math import log
 import numpy as np
 import pytest
 
-from nrs_design.controllers.float32 import exact_decimal, to_float32
-from nrs_design.controllers.gains import design_from_gains, gains_of, with_chosen
+from nrs_design.controllers.float32 import exact_decimal, round_float32
+from nrs_design.controllers.gains import apply_free_gains, design_from_gains, gains_of
 from nrs_design.design.analysis import design_controllers
 from nrs_design.design.impedance_optimum import optimize_impedance
 from nrs_design.design.laws.impedance import impedance_problem, requirement_of
@@ -107,10 +107,10 @@ def test_recorded_gains_are_as_near_as_the_spec_says(factor, fits):
     design = design_controllers(spec, build_plant(spec))
     gains = gains_of(design)
     for gain in ("Kp", "Kd"):
-        moved = to_float32(design.laws["motion"].gains[gain] * Fraction(factor))
+        moved = round_float32(design.laws["motion"].gains[gain] * Fraction(factor))
         gains["motion"][gain] = exact_decimal(moved)
     if fits:
-        assert gains_of(with_chosen(spec, design, gains)) == gains
+        assert gains_of(apply_free_gains(spec, design, gains)) == gains
         return
     with pytest.raises(CertificateError, match="gain Kp of motion is outside its bounds"):
-        with_chosen(spec, design, gains)
+        apply_free_gains(spec, design, gains)

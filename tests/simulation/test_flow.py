@@ -22,7 +22,7 @@ def test_states_are_those_of_the_exponential():
     one = flow(2.0)
     z = np.array([0.3, -0.4, 1.0])
     for time in (0.0, 0.1, 0.37, one.h):
-        assert one.after(z, time) == pytest.approx(expm(OSCILLATOR * time) @ z, abs=1e-14)
+        assert one.advance(z, time) == pytest.approx(expm(OSCILLATOR * time) @ z, abs=1e-14)
     assert one.chunk(z, CHUNK)[-1] == pytest.approx(expm(OSCILLATOR * one.h * CHUNK) @ z, abs=1e-12)
 
 
@@ -66,7 +66,7 @@ def test_it_is_the_first_crossing_of_all(seed):
         assert not len(across)
         return
     assert not len(across) or found <= times[across[0]]
-    assert (rows @ one.after(z, found) * sides).min() == pytest.approx(0, abs=1e-9)
+    assert (rows @ one.advance(z, found) * sides).min() == pytest.approx(0, abs=1e-9)
 
 
 def test_nothing_is_watched():
@@ -90,7 +90,7 @@ def test_signals_that_stay_do_not_cross(seed, count):
     states = one.chunk(z, count)
     stays = one.first_doubtful(states, sides) == count
     fine = [
-        one.after(state, share * one.h) for state in states[:-1] for share in (0.0, 0.3, 0.6, 1.0)
+        one.advance(state, share * one.h) for state in states[:-1] for share in (0.0, 0.3, 0.6, 1.0)
     ]
     crosses = bool((np.array(fine) @ rows.T * sides < -1e-9).any())
     assert not (stays and crosses)

@@ -23,20 +23,20 @@ FRICTION = st.sampled_from([0.0, 55.3])
 def test_without_friction_it_is_a_lag_by_hand(omega, command, time):
     final, gone = KM * command, 1 - math.exp(-time / TAU)
     wanted = final * time + TAU * (omega - final) * gone, omega + (final - omega) * gone
-    assert Motor(KM, TAU).after(0.0, omega, command, time) == pytest.approx(wanted, abs=1e-12)
+    assert Motor(KM, TAU).advance(0.0, omega, command, time) == pytest.approx(wanted, abs=1e-12)
 
 
 @given(SPEED, COMMAND, FRICTION, TIME, TIME)
 def test_a_stop_on_the_way_changes_nothing(omega, command, friction, first, second):
     motor = Motor(KM, TAU, friction)
-    there = motor.after(*motor.after(0.0, omega, command, first), command, second)
-    assert there == pytest.approx(motor.after(0.0, omega, command, first + second), abs=1e-11)
+    there = motor.advance(*motor.advance(0.0, omega, command, first), command, second)
+    assert there == pytest.approx(motor.advance(0.0, omega, command, first + second), abs=1e-11)
 
 
 @given(SPEED, COMMAND, FRICTION)
 def test_it_begins_with_the_rate_of_its_equation(omega, command, friction):
     motor, h = Motor(KM, TAU, friction), 1e-7
-    _, after = motor.after(0.0, omega, command, h)
+    _, after = motor.advance(0.0, omega, command, h)
     sign = math.copysign(1.0, omega if omega else command)
     rate = (KM * (command - sign * friction) - omega) / TAU
     if omega == 0 and abs(command) <= friction:
@@ -48,8 +48,8 @@ def test_it_begins_with_the_rate_of_its_equation(omega, command, friction):
 
 def test_friction_holds_what_is_too_weak():
     motor = Motor(4.8417e-4, 0.0351, 55.3)
-    assert motor.after(0.1, 0.0, 55.0, 1.0) == (0.1, 0.0)
-    theta, omega = motor.after(0.0, 0.02, 10.0, 10.0)
+    assert motor.advance(0.1, 0.0, 55.0, 1.0) == (0.1, 0.0)
+    theta, omega = motor.advance(0.0, 0.02, 10.0, 10.0)
     assert omega == 0
     # It glides to rest: tau ln(1 + omega/drag) at drag = Km (f - u).
     drag = 4.8417e-4 * 45.3
@@ -71,13 +71,13 @@ DRIVES = {
 def test_pieces_are_the_integral(name):
     """Against an integrator, a command after the other."""
     drive = DRIVES[name]
-    joint = DrivenJoint.of(drive)
+    joint = DrivenJoint.create(drive)
     n = drive.order
     theta, omega = 0.3, 0.0
     z = np.zeros(n)
     z[-1] = theta
     for command, time in ((0.5, 0.013), (-0.2, 0.004), (0.1, 0.2)):
-        theta, omega = joint.after(theta, omega, command, time)
+        theta, omega = joint.advance(theta, omega, command, time)
 
         def rates(t, z, u=command):
             return joint.generator[:n, :n] @ z + joint.generator[:n, n] * u
@@ -89,6 +89,6 @@ def test_pieces_are_the_integral(name):
 
 @pytest.mark.parametrize("name", ["position", "jumping", "lag"])
 def test_a_robot_that_follows_positions_rests_where_it_is_sent(name):
-    joint = DrivenJoint.of(DRIVES[name])
-    assert joint.after(1.7, 0.0, 1.7, 0.5) == pytest.approx((1.7, 0.0), abs=1e-9)
-    assert joint.after(1.7, 0.0, 0.4, 30.0) == pytest.approx((0.4, 0.0), abs=1e-9)
+    joint = DrivenJoint.create(DRIVES[name])
+    assert joint.advance(1.7, 0.0, 1.7, 0.5) == pytest.approx((1.7, 0.0), abs=1e-9)
+    assert joint.advance(1.7, 0.0, 0.4, 30.0) == pytest.approx((0.4, 0.0), abs=1e-9)

@@ -154,7 +154,7 @@ def test_the_timer_counts_samples_as_the_exported_logic_does():
     spec = parse_spec(text)
     run = simulated(text, "sampled")
     response = run.response
-    logic = StepLogic.of(spec.mode_logic, response.modes, spec.sampling.period.exact)
+    logic = StepLogic.create(spec.mode_logic, response.modes, spec.sampling.period.exact)
     mode, held, modes = logic.start, 0, []
     for command, torque in zip(response["hand"], response["torque"], strict=True):
         signals = {"command": np.float32(command), "torque": np.float32(torque)}

@@ -6,11 +6,11 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import (
-    alone,
     fine_step,
     mode_eigenvalues,
     mode_rates,
     sampled_direction,
+    single_mode_system,
     transition_matrices,
     worst_direction,
 )
@@ -58,6 +58,6 @@ def test_sampled_direction_is_near_the_slowest_one():
 
 def test_a_mode_alone_keeps_its_own_states():
     unequal = system([[-1]], [[0, 1], [-2, -1]])
-    assert alone(unequal, 0).states == ("x1",)
-    assert alone(unequal, 1).order == 2
+    assert single_mode_system(unequal, 0).states == ("x1",)
+    assert single_mode_system(unequal, 1).order == 2
     assert [len(values) for values in mode_eigenvalues(unequal)] == [1, 2]

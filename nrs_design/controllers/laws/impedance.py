@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
-from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
+from nrs_design.controllers.parts import DEFAULT_LIMIT, FORCE, HAND, StepGain, StepPart
 from nrs_design.controllers.taylor import exponential_between
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
@@ -43,7 +43,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     Kt: Fraction = Fraction(0)
 
     @classmethod
-    def gains_in(cls, spec: ImpedanceControllerSpec) -> tuple[str, ...]:
+    def gain_names(cls, spec: ImpedanceControllerSpec) -> tuple[str, ...]:
         """Return the names of the gains; Kt needs a value in the spec."""
         return ("Mt", "Bt") if spec.Kt is None else ("Mt", "Bt", "Kt")
 
@@ -76,11 +76,11 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         spring's force counts as part of the force.
         """
         if self.Mt == 0:
-            return self.discrete(None, to_float32(1 / self.Bt), to_float32(period), self.Kt)
+            return self.discrete(None, round_float32(1 / self.Bt), round_float32(period), self.Kt)
         step = self.Bt * period / self.Mt
         a = 1 - step if method == "euler" else exponential_between(-step)[0]
         b = period / self.Mt if method == "euler" else (1 - a) / self.Bt
-        return self.discrete(to_float32(a), to_float32(b), to_float32(period), self.Kt)
+        return self.discrete(round_float32(a), round_float32(b), round_float32(period), self.Kt)
 
     @classmethod
     def discrete(
@@ -101,20 +101,24 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         Beside controllers that are given a position, the reference is counted from that position;
         while one of those is active, it and the velocity of the admittances decay.
         """
-        return (_admittance(sprung="Kt" in number_names, inert="a" in number_names, beside=has_position),)
+        return (
+            _admittance(
+                sprung="Kt" in number_names, inert="a" in number_names, beside=has_position
+            ),
+        )
 
 
 LAW = Admittance
 
 
 _VELOCITY = Value(
-    "velocity", "vm", "rad/s", BEYOND, "velocity of the admittance", stored="vm [rad/s]"
+    "velocity", "vm", "rad/s", DEFAULT_LIMIT, "velocity of the admittance", stored="vm [rad/s]"
 )
 _REFERENCE = Value(
     "reference",
     "xref",
     "rad",
-    BEYOND,
+    DEFAULT_LIMIT,
     "reference of the motion controller",
     starts_at_angle=True,
     stored="e [rad]",
@@ -123,12 +127,18 @@ _OFFSET = Value(
     "offset",
     "r",
     "rad",
-    BEYOND,
+    DEFAULT_LIMIT,
     "reference over the commanded position",
     stored="reference [rad]",
 )
 _COMMANDED = Value(
-    "commanded", "xcom", "rad", BEYOND, "reference that the command alone gives", "none", True
+    "commanded",
+    "xcom",
+    "rad",
+    DEFAULT_LIMIT,
+    "reference that the command alone gives",
+    "none",
+    True,
 )
 
 

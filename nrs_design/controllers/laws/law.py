@@ -14,7 +14,7 @@ from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.parts import PROPORTIONAL, StepPart
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
@@ -43,7 +43,7 @@ class AbstractLaw(ABC):
         return {field.name: number for field, number in numbers if number != field.default}
 
     @classmethod
-    def of(cls, gains: Mapping[str, Fraction]) -> Self:
+    def create(cls, gains: Mapping[str, Fraction]) -> Self:
         """Return the law with the gains of these names; others are left alone."""
         needed = (f.name for f in fields(cls) if f.name in gains or f.default is MISSING)
         return cls(**{name: gains[name] for name in needed})
@@ -67,7 +67,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     # Sentences about this law alone, by the ids of assumptions.
     sentences: ClassVar[Mapping[str, str]] = {}
     # The state may decay in the position command of other controllers.
-    bleeds: ClassVar[bool] = False
+    is_leaky: ClassVar[bool] = False
     # Assumption on contact while the law is active, beside laws with another kind of command: by
     # default contact is never lost. None for no assumption.
     contact_kept: ClassVar[str | None] = "never"
@@ -110,7 +110,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return (PROPORTIONAL,)
 
     @classmethod
-    def gains_in(cls, spec: S) -> tuple[str, ...]:
+    def gain_names(cls, spec: S) -> tuple[str, ...]:
         """Return the names of the gains that a controller of a spec has; by default all."""
         return tuple(cls.units)
 
@@ -122,7 +122,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         for gain, value in self.gains.items():
             if gain in self.fixed:
                 said = getattr(given, self.fixed[gain])
-                if said is not None and value != to_float32(exact_number(said)):
+                if said is not None and value != round_float32(exact_number(said)):
                     return f"gain {gain} is not what the spec fixes"
             elif gain not in given.gains():
                 return f"gain {gain} has no bounds in the spec"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws.law import AbstractLaw
 
 
@@ -32,7 +32,7 @@ class ProportionalDerivative(AbstractLaw):
         return self.Kp == self.Kd == 0
 
     @staticmethod
-    def units_in(command: str) -> Mapping[str, str]:
+    def command_units(command: str) -> Mapping[str, str]:
         """Return the units of the gains where commands are in that unit."""
         return {"Kp": f"{command}/rad", "Kd": f"{command}*s/rad"}
 
@@ -41,9 +41,9 @@ class ProportionalDerivative(AbstractLaw):
         """The z of ``Kd (s + z)``, in 1/s."""
         return self.Kp / self.Kd
 
-    def over(self, period: Fraction) -> Fraction:
+    def difference_gain(self, period: Fraction) -> Fraction:
         """Return Kd over a period in s: what multiplies the change of the error in a sample."""
-        return to_float32(self.Kd / period)
+        return round_float32(self.Kd / period)
 
 
 # Gains of a robot with a motion loop inside.

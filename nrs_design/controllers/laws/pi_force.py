@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
-from nrs_design.controllers.parts import BEYOND, PROPORTIONAL, StepGain, StepPart
+from nrs_design.controllers.parts import DEFAULT_LIMIT, PROPORTIONAL, StepGain, StepPart
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, IntegralControllerSpec
 
@@ -31,12 +31,17 @@ INTEGRAL = StepPart(
     ),
     states=(
         Value(
-            "integral", "w", "rad", BEYOND, "integral of the force error", stored="integral [rad]"
+            "integral",
+            "w",
+            "rad",
+            DEFAULT_LIMIT,
+            "integral of the force error",
+            stored="integral [rad]",
         ),
     ),
     adds="integral",
     total="aimed",
-    after=(
+    state_operations=(
         Operation("bleeding", "multiply", "bled", "integral"),
         Operation("gathered", "multiply", "Ki_T", "lack"),
         Operation("next_integral", "add", "bleeding", "gathered"),
@@ -67,7 +72,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
             "wanted force and its sample to w."
         ),
     }
-    bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
+    is_leaky: ClassVar[bool] = IntegralControllerSpec.is_leaky
     contact_kept: ClassVar[str | None] = "pi-force"
 
     Kp: Fraction  # In rad/(N m)
@@ -85,7 +90,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
 
     def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Integrate by Euler's method, ``w+ = w + Ki T (Fd - F)``, with Ki T rounded once."""
-        numbers = {"Kf": self.Kp, "Ki_T": to_float32(self.Ki * period)}
+        numbers = {"Kf": self.Kp, "Ki_T": round_float32(self.Ki * period)}
         return DiscreteLaw(type(self), {name: number for name, number in numbers.items() if number})
 
     @classmethod

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.parts import FORCE_GAIN, POSITION, StepGain, StepPart
 from nrs_design.errors import DesignError
@@ -33,7 +33,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
     R: Fraction = Fraction(1)  # Wanted inertia over that of the joint; 1 is no gain of the law
 
     @classmethod
-    def gains_in(cls, spec: TorqueImpedanceSpec) -> tuple[str, ...]:
+    def gain_names(cls, spec: TorqueImpedanceSpec) -> tuple[str, ...]:
         """Return the names of the gains; R needs a value other than 1 in the spec."""
         return ("K", "D") if spec.inertia_ratio in (None, 1) else ("K", "D", "R")
 
@@ -46,12 +46,12 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
 
     def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Return ``Kp = K/R``, ``D/(R T)`` and the share of the force, ``1/R - 1``."""
-        numbers = {"Kp": to_float32(self.K / self.R)}
+        numbers = {"Kp": round_float32(self.K / self.R)}
         if self.D:
-            numbers["Kd_over_T"] = to_float32(self.D / (self.R * period))
+            numbers["Kd_over_T"] = round_float32(self.D / (self.R * period))
         if self.R != 1:
             # Contact brakes with F; the law makes F/R of it.
-            numbers[FORCE_GAIN] = to_float32(1 / self.R - 1)
+            numbers[FORCE_GAIN] = round_float32(1 / self.R - 1)
         return DiscreteLaw(type(self), numbers)
 
     @classmethod

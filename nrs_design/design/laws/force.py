@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.float32 import round_float32, round_significant
 from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.force_loop import (
     Approach,
@@ -47,10 +47,10 @@ class ForceAnalysis(AbstractControllerAnalysis):
 def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
     """Return the given Kp, or the Kp with the damping ratio of the spec."""
     if given.proportional_gain is not None:
-        return to_float32(given.proportional_gain.exact)
+        return round_float32(given.proportional_gain.exact)
     stiffness = task.stiffness(given)
     gain = design_force_gain(task.followed(given), stiffness, float(given.damping_ratio or 0))
-    return to_float32(round_significant(gain, task.digits))
+    return round_float32(round_significant(gain, task.digits))
 
 
 def choose(task: Task, given: ForceControllerSpec) -> Choice:

@@ -9,7 +9,12 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
-from nrs_design.controllers.float32 import exact_decimal, neighbors, round_significant, to_float32
+from nrs_design.controllers.float32 import (
+    exact_decimal,
+    neighbors,
+    round_float32,
+    round_significant,
+)
 from nrs_design.controllers.laws import Admittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.doubts import doubt_bounds, doubt_stiffness
@@ -97,7 +102,7 @@ def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
     """Return the gains that the spec gives, or the best that its bounds and goals allow."""
     if given.Mt.fixed and given.Bt.fixed:
         # The certificate says whether these gains are stable.
-        Mt, Bt = (to_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
+        Mt, Bt = (round_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
         return Admittance(Mt, Bt, _spring(given)), None
     requirement = requirement_of(task, given)
     problem = impedance_problem(task, given, requirement)
@@ -290,10 +295,10 @@ def _rounded_within(
 
 def _spring(given: ImpedanceControllerSpec) -> Fraction:
     """Return Kt as the robot holds it; zero where the spec gives none."""
-    return Fraction(0) if given.Kt is None else to_float32(given.Kt.min.exact)
+    return Fraction(0) if given.Kt is None else round_float32(given.Kt.min.exact)
 
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:
     """Round a gain, keep it within its bounds, and round it to single precision."""
     rounded = round_significant(value, digits)
-    return to_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))
+    return round_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import LAWS, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values, is_unusual
@@ -159,7 +159,7 @@ class LawDesign:
 def choose_given(task: Task, given: ControllerSpec) -> Choice:
     """Return the law with the gains that the spec fixes; one left open is a `DesignError`."""
     law, gains = LAWS[given.type], dict[str, Fraction]()
-    for name in law.gains_in(given):
+    for name in law.gain_names(given):
         value = getattr(given, law.fixed.get(name, name))
         if isinstance(value, GainSpec):
             value = value.min if value.fixed else None
@@ -169,8 +169,8 @@ def choose_given(task: Task, given: ControllerSpec) -> Choice:
                 remedy="give its value",
                 at=(law.fixed.get(name, name),),
             )
-        gains[name] = to_float32(exact_number(value))
-    return law.of(gains), None
+        gains[name] = round_float32(exact_number(value))
+    return law.create(gains), None
 
 
 GIVEN = LawDesign(choose_given)  # For laws with given gains and without measures

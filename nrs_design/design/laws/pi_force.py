@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.controllers.float32 import round_significant, to_float32
+from nrs_design.controllers.float32 import round_float32, round_significant
 from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.design.force_loop import Approach, force_loop_response
 from nrs_design.design.laws.force import ForceAnalysis, analyze_approach, proportional_gain
@@ -57,7 +57,7 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
     Kp = proportional_gain(task, given)
     if given.settling_time is None:
         assert given.integral_gain is not None
-        return IntegralForce(Kp, to_float32(given.integral_gain.exact)), None
+        return IntegralForce(Kp, round_float32(given.integral_gain.exact)), None
     if Kp == 0:
         raise DesignError(
             "the damping ratio asks for no proportional gain, and a PI controller has one",
@@ -67,7 +67,7 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
     gain = integral_gain(
         task.followed(given), task.stiffness(given), float(Kp), given.settling_time.si
     )
-    return IntegralForce(Kp, to_float32(round_significant(gain, task.digits))), None
+    return IntegralForce(Kp, round_float32(round_significant(gain, task.digits))), None
 
 
 def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -> ForceAnalysis:

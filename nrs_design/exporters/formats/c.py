@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.controllers.operations import Operation, StepLaw
-from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.parts import DEFAULT_LIMIT
 from nrs_design.controllers.step_law import INTEGRAL_LIMIT
 from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters import SAMPLED, Format
@@ -50,7 +50,7 @@ def header_text(program: Program) -> str:
         comment=block_comment(_header_lines(program), C_HEADER),
         names=program.names,
         law=program.law,
-        beyond=(BEYOND, 2 * BEYOND),
+        beyond=(DEFAULT_LIMIT, 2 * DEFAULT_LIMIT),
         units=UNITS,
         seen=_SEEN,
     )
@@ -87,7 +87,11 @@ def _expression(law: StepLaw, names: CNames, operation: Operation) -> str:
 def _operand(law: StepLaw, names: CNames, name: str) -> str:
     if name in law.coefficient:
         coefficient = law.coefficient[name]
-        return f"{name}_of[in->mode]" if coefficient.by_mode else names.coefficient(coefficient)
+        return (
+            f"{name}_of[in->mode]"
+            if coefficient.differs_by_mode
+            else names.coefficient(coefficient)
+        )
     if any(value.name == name for value in law.inputs):
         return f"in->{name}"
     return f"state->{name}" if any(value.name == name for value in law.states) else name

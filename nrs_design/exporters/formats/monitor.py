@@ -128,7 +128,7 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
         "SATURATION": limits.region is None,
         "REGION": limits.region is not None,
         "STIFFNESS": sector is not None,
-        "PULL": sector is not None and not sector.kept,
+        "PULL": sector is not None and not sector.contact_maintained,
         "FAST": sector is not None and sector.speed is not None,
     }
     return {kind: text for kind, text in KINDS.items() if kind not in told or told[kind]}

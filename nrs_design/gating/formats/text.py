@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, count_by_verdict
 from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.printable import printable
@@ -94,7 +94,7 @@ def _shortest(text: str) -> str:
     """Return the shortest decimal that rounds to this single-precision number."""
     value = Fraction(text)
     candidates = (f"{float(value):.{digits}g}" for digits in range(1, 10))
-    found = next(short for short in candidates if to_float32(Fraction(short)) == value)
+    found = next(short for short in candidates if round_float32(Fraction(short)) == value)
     return f"{Decimal(found):f}"
 
 

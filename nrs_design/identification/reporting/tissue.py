@@ -92,7 +92,7 @@ def _notes(result: TissueIdentification, arm: float | None) -> Iterator[str]:
         )
         yield f"the law itself, by its tangent at {tangent.operating_point:.5g} {length}: {values}"
     if arm is not None:
-        pivot_values = [f"{value:.6g}" for value in law.at_pivot(arm).values]
+        pivot_values = [f"{value:.6g}" for value in law.convert_to_pivot(arm).values]
         yield f"at the pivot: {_parameter_text(_parameter_rows(law, pivot_values, True))}"
 
 
@@ -139,7 +139,7 @@ def _table(result: TissueIdentification) -> Table:
 
 def _facts(result: TissueIdentification, arm: float | None) -> Facts:
     law, tangent = result.model.law, result.tangent
-    pivot_values = None if arm is None else law.at_pivot(arm).values
+    pivot_values = None if arm is None else law.convert_to_pivot(arm).values
     return {
         "chosen": law.name,
         "reason": result.reason,

@@ -10,7 +10,7 @@ from math import ceil, floor, inf
 import numpy as np
 
 from nrs_design.api.audit import AuditCheck
-from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.controllers.sector import DETECTION_FACTOR, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.log import RunLog
@@ -43,7 +43,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[AuditCheck, ...]
     """Hold a log against the range of stiffness.
 
     The checks are of the stiffness, and of the speed where the spec bounds it; the share is of the
-    rows in which `JUDGED` times the range would have been told, None where nothing tells.
+    rows in which `DETECTION_FACTOR` times the range would have been told, None where nothing tells.
     """
     sector, columns = bounds.sector, _columns(log, bounds)
     if columns is None:
@@ -63,7 +63,7 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> tuple[tuple[AuditCheck, ...]
     for begin, end in _contacts(log, certain, sector):
         left, is_judged[begin:end] = _one_surface(log, rows, (begin, end), sector)
         first = min(first, left)
-    pulled = np.flatnonzero((rows.torque_high < 0) & (not sector.kept))
+    pulled = np.flatnonzero((rows.torque_high < 0) & (not sector.contact_maintained))
     first = min(first, float(pulled[0]) if len(pulled) else inf)
     # After a violation, the surface is unknown.
     is_judged[int(min(first, len(is_judged))) :] = False
@@ -99,7 +99,7 @@ def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -
     unknown = np.isnan(first)
     return _Rows(
         np.where(unknown, -inf, lowest),
-        np.where(unknown | ~((torque_low > 0) | sector.kept), inf, highest),
+        np.where(unknown | ~((torque_low > 0) | sector.contact_maintained), inf, highest),
         *(torque_low, torque_high, first, last),
     )
 
@@ -107,7 +107,7 @@ def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -
 def _contacts(log: RunLog, certain: Flags, sector: Sector) -> Iterator[tuple[int, int]]:
     """Yield first row and end of stretches in which the surface stands still."""
     count = len(certain)
-    if sector.surface == "fixed" or sector.kept:
+    if sector.surface == "fixed" or sector.contact_maintained:
         yield 0, count
         return
     breaks = np.flatnonzero(log.gaps) + 1
@@ -131,7 +131,7 @@ def _one_surface(
     # From the rows before: a row that is off would move its own interval.
     before = np.concatenate([[-inf], lowest[:-1]]) - drift
     after = np.concatenate([[inf], highest[:-1]]) + drift
-    factor, low, high = float(JUDGED), float(sector.low), float(sector.high)
+    factor, low, high = float(DETECTION_FACTOR), float(sector.low), float(sector.high)
     with np.errstate(invalid="ignore"):
         is_below = rows.torque_high[part] < factor * high * (rows.first[part] - after)
         is_above = rows.torque_low[part] > low / factor * (rows.last[part] - before)
@@ -142,7 +142,8 @@ def _stiffness(
     log: RunLog, torque: Array, first: float, share: float, limit_text: str, basis: str
 ) -> AuditCheck:
     percent = floor(1000 * share) / 10
-    note = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
+    factor = float(DETECTION_FACTOR)
+    note = f"{factor:g} times the range would have been told in {percent:g} % of the rows"
     if first == inf:
         words = f"the range explains every row; {note}"
         return AuditCheck("stiffness", "undecided", words, limit_text, basis)

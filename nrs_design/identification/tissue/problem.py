@@ -142,7 +142,7 @@ class LeastSquaresProblem:
     @cached_property
     def begins(self) -> tuple[slice, ...]:
         """Stretches with an unknown initial state, for a law with memory."""
-        has_memory = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
+        has_memory = issubclass(self.kind, AbstractLinearLaw) and self.kind.has_memory
         return self.trial.unrested if has_memory else ()
 
     @cached_property
@@ -160,7 +160,7 @@ class LeastSquaresProblem:
         for shift in _SHIFTS if len(self.no_shift) else (0.0,):
             trial = self.trial
             if shift:
-                trial = replace(trial, motion=self.position.moved(shift * self.travel))
+                trial = replace(trial, motion=self.position.translate(shift * self.travel))
             for law in scan(self.kind, trial, self.offsets):
                 yield Point(self, np.append(np.log(law.values), self.no_shift + shift))
 
@@ -210,7 +210,7 @@ class Point:
     def motion(self) -> Motion:
         """The deflection from the moved zero."""
         shift = self.shift
-        return self.problem.position.moved(shift) if shift else self.problem.trial.motion
+        return self.problem.position.translate(shift) if shift else self.problem.trial.motion
 
     @cached_property
     def force(self) -> Array:

@@ -36,14 +36,14 @@ class Environment:
     @property
     def depends(self) -> bool:
         """Whether stiffness and damping depend on each other, so that corners may be missed."""
-        return self.preloaded or (self.each_losable and bool(self.law.beside))
+        return self.preloaded or (self.each_losable and bool(self.law.parallel_damping))
 
     @property
     def parameters(self) -> dict[str, Interval]:
         """The ranges by the names of the parameters."""
         return dict(zip(self.law.parameters(), self.ranges, strict=True))
 
-    def at(self, values: Mapping[str, Fraction]) -> AbstractLinearLaw:
+    def evaluate(self, values: Mapping[str, Fraction]) -> AbstractLinearLaw:
         """Return the law at values of its parameters, by name; other names are left alone."""
         return self.law(*(values[name] for name in self.law.parameters()))
 
@@ -71,7 +71,7 @@ class Environment:
         """
         for law in self.corners:
             _ = law.load
-        damping = self.parameters.get(self.law.beside, Interval.point(Fraction(0)))
+        damping = self.parameters.get(self.law.parallel_damping, Interval.point(Fraction(0)))
         return self.stiffness, damping
 
     @property
@@ -112,14 +112,14 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
     delta > 0 is ``sum k_j max(0, delta - a_j) = k delta``, and k is at least the stiffness of the
     first part and at most the sum, whatever the a_j are and however the k_j move.
     """
-    if odd := [part.name for part in parts if part.law.has_mass or part.law.remembers]:
+    if odd := [part.name for part in parts if part.law.has_mass or part.law.has_memory]:
         raise InternalError(f"mass or memory of {odd[0]} would be left out")
     stiffness, dampings = zip(*(part.load for part in parts), strict=True)
     total = _sum(stiffness)
     if losable:
         total = Interval(total.nominal, min(k.low for k in stiffness), total.high)
     name = "+".join(part.name for part in parts)
-    damped = any(part.law.beside for part in parts)
+    damped = any(part.law.parallel_damping for part in parts)
     law, ranges = (KelvinVoigt, (total, _sum(dampings))) if damped else (Elastic, (total,))
     return Environment(name, law, ranges, parts, losable)
 

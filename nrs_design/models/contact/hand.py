@@ -46,7 +46,7 @@ class Hand(AbstractMemorylessLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping", "mass")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b", "m"})
     front: ClassVar[str] = "k"
-    beside: ClassVar[str] = "b"
+    parallel_damping: ClassVar[str] = "b"
     has_mass: ClassVar[bool] = True
 
     k: Number  # Stiffness in N/m (N m/rad)

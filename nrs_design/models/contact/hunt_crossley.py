@@ -80,7 +80,7 @@ class HuntCrossley(AbstractNonlinearLaw):
         touching = motion.deflection > 0
         return np.asarray(touching * power * (self.rho + self.lam * motion.velocity))
 
-    def at_pivot(self, radius: float) -> HuntCrossley:
+    def convert_to_pivot(self, radius: float) -> HuntCrossley:
         """Return ``rho r^(phi+1)`` and ``lam r^(phi+2)``; the exponent stays."""
         return HuntCrossley(
             self.rho * radius ** (self.phi + 1), self.lam * radius ** (self.phi + 2), self.phi
@@ -97,7 +97,7 @@ class HuntCrossley(AbstractNonlinearLaw):
         return 0.0 if deflection <= 0 else (self.rho + self.lam * velocity) * deflection**self.phi
 
     @classmethod
-    def drawn(cls, numbers: Mapping[str, float]) -> HuntCrossley:
+    def build(cls, numbers: Mapping[str, float]) -> HuntCrossley:
         """Return the law with this tangent at ``about``."""
         tangent = numbers["stiffness"], numbers["damping"]
         return cls.through(*tangent, numbers["exponent"], numbers["about"])

@@ -49,7 +49,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
     keys: ClassVar[tuple[str, ...]] = ("parallel_stiffness", "series_stiffness", "damping")
     inverse: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k2"
-    remembers: ClassVar[bool] = True
+    has_memory: ClassVar[bool] = True
     states: ClassVar[tuple[str, ...]] = ("delta [rad]", "damper deflection [rad]")
 
     # k1, k2: stiffnesses in N/m (N m/rad).
@@ -58,7 +58,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
     b: Number  # Damping in N s/m (N m s/rad)
 
     @classmethod
-    def from_eta(cls, eta1: float, eta2: float, eta3: float) -> KelvinBoltzmann:
+    def create_from_eta(cls, eta1: float, eta2: float, eta3: float) -> KelvinBoltzmann:
         """Return the elements that have these coefficients, in N/m, N s/m and s.
 
         ``k2 = eta2/eta3``, ``k1 = eta1 k2/(k2 - eta1)``, ``b = eta3 (k1 + k2)``. They are positive
@@ -109,7 +109,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
         """Yield the best law for each of some time constants."""
         for tau in motion.time_constants.tolist():
             eta1, arm = solve(motion.deflection, motion.relaxed(tau).y)
-            yield cls.from_eta(eta1, (eta1 + arm) * tau, tau)
+            yield cls.create_from_eta(eta1, (eta1 + arm) * tau, tau)
 
     @classmethod
     def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:

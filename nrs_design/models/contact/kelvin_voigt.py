@@ -19,7 +19,7 @@ class KelvinVoigt(AbstractMemorylessLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"
-    beside: ClassVar[str] = "b"
+    parallel_damping: ClassVar[str] = "b"
 
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero

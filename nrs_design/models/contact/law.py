@@ -60,7 +60,7 @@ class AbstractContactLaw(ABC):
     """Reaction force of an environment to its deflection; parameters are positive.
 
     A law is written for a linear motion (m, N) and for a rotation about the pivot (rad, N m)
-    alike; `at_pivot` converts from one to the other.
+    alike; `convert_to_pivot` converts from one to the other.
     """
 
     name: ClassVar[str]
@@ -87,7 +87,7 @@ class AbstractContactLaw(ABC):
         yield cls(*solve(*unit.sensitivities(motion).T))
 
     @abstractmethod
-    def at_pivot(self, radius: float) -> Self:
+    def convert_to_pivot(self, radius: float) -> Self:
         """Return the law of the rotation, for a contact at this distance in m from the pivot."""
 
     @classmethod
@@ -117,7 +117,7 @@ class AbstractNonlinearLaw(AbstractContactLaw):
 
     @classmethod
     @abstractmethod
-    def drawn(cls, numbers: Mapping[str, float]) -> Self:
+    def build(cls, numbers: Mapping[str, float]) -> Self:
         """Return the law at the pivot from the numbers of its spec, by their keys."""
 
     @abstractmethod
@@ -148,11 +148,11 @@ class AbstractLinearLaw(AbstractContactLaw):
     may_vanish: ClassVar[frozenset[str]] = frozenset()
     # The stiffness that a sudden motion meets, and the damping beside it; "" without one.
     front: ClassVar[str]
-    beside: ClassVar[str] = ""
+    parallel_damping: ClassVar[str] = ""
     # The states of `react`; the first is the one that all environments of a spec share.
     states: ClassVar[tuple[str, ...]] = ("delta [rad]",)
     # The force may depend on earlier deflections.
-    remembers: ClassVar[bool] = False
+    has_memory: ClassVar[bool] = False
     # The environment has a place of rest: a constant deflection keeps a force.
     has_rest: ClassVar[bool] = True
     # A mass may move with the contact: then the force needs the acceleration.
@@ -168,7 +168,7 @@ class AbstractLinearLaw(AbstractContactLaw):
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``Ze = F/v``: numerator and denominator in s, highest power first, of equal length."""
 
-    def at_stiffness(self, value: Fraction) -> Self:
+    def replace_stiffness(self, value: Fraction) -> Self:
         """Return the law with another stiffness, in N/m (N m/rad), that a sudden motion meets.
 
         By default all parameters grow in proportion. In every law the characteristic polynomial of
@@ -206,7 +206,7 @@ class AbstractLinearLaw(AbstractContactLaw):
     @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment alone."""
-        return not (self.remembers or self.lags)
+        return not (self.has_memory or self.lags)
 
     @property
     def load(self) -> tuple[Fraction, Fraction]:
@@ -216,11 +216,14 @@ class AbstractLinearLaw(AbstractContactLaw):
         `AssemblyError` if `react` says anything else.
         """
         k = Fraction(getattr(self, self.front))
-        b = Fraction(getattr(self, self.beside)) if self.beside else ZERO
+        b = Fraction(getattr(self, self.parallel_damping)) if self.parallel_damping else ZERO
         force, rates = [b, k], [[ONE, ZERO]]
         if self.memory_rates is not None:
             decays, follow_rate = self.memory_rates
-            force, rates = [b, k, -k], [[ONE, ZERO, ZERO], [ZERO, follow_rate, -decays - follow_rate]]
+            force, rates = (
+                [b, k, -k],
+                [[ONE, ZERO, ZERO], [ZERO, follow_rate, -decays - follow_rate]],
+            )
         velocity, *states = coordinates(1 + len(self.states))
         if self.react(velocity, states) != (force, rates):
             raise AssemblyError(
@@ -244,7 +247,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
         `alone`: no other environment is touched.
         """
-        if cls.remembers:
+        if cls.has_memory:
             yield Assumption.create("memory.kept", environment=environment, states=cls.states)
             if not is_only:
                 yield Assumption.create("memory.free", environment=environment)
@@ -259,7 +262,7 @@ class AbstractLinearLaw(AbstractContactLaw):
         """Stiffness that a sudden motion meets, in N/m (N m/rad)."""
         return float(getattr(self, self.front))
 
-    def at_pivot(self, radius: float) -> Self:
+    def convert_to_pivot(self, radius: float) -> Self:
         """Return the law with every parameter times ``r^2`` (thesis 6.3.1.1)."""
         return type(self)(*(turn(value, radius) for value in astuple(self)))
 
@@ -276,14 +279,16 @@ class AbstractLinearLaw(AbstractContactLaw):
             return None
         return "< 0" if vanishes else "<= 0"
 
-    def given(self) -> dict[str, str | float]:
+    def spec_fields(self) -> dict[str, str | float]:
         """Return the law and its parameters by the keys of a spec."""
         return {"model": self.name, **dict(zip(self.keys, self.values, strict=True))}
 
     def texts(self, unit: Callable[[str], str] = str) -> tuple[str, ...]:
         """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
         parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
-        return tuple(f"{name} = {float(v):.6g} {unit(unit_text)}" for name, v, unit_text in parts if v)
+        return tuple(
+            f"{name} = {float(v):.6g} {unit(unit_text)}" for name, v, unit_text in parts if v
+        )
 
 
 @dataclass(frozen=True)
@@ -303,7 +308,7 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
         numerator = (0.0,) * (2 - len(self.values)) + self.values[::-1]
         return numerator, (0.0,) * (len(numerator) - 2) + (1.0, 0.0)
 
-    def at_stiffness(self, value: Fraction) -> Self:
+    def replace_stiffness(self, value: Fraction) -> Self:
         """Return it with the same damping and mass."""
         return replace(self, **{self.front: value})
 

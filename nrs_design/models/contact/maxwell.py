@@ -47,7 +47,7 @@ class Maxwell(AbstractLinearLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     inverse: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"
-    remembers: ClassVar[bool] = True
+    has_memory: ClassVar[bool] = True
     states: ClassVar[tuple[str, ...]] = ("spring stretch [rad]",)
     has_rest: ClassVar[bool] = False
 

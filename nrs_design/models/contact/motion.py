@@ -73,7 +73,7 @@ class Motion:
 
         return Relaxation(self.steps, self.increments, time_constant)
 
-    def moved(self, shift: float) -> Motion:
+    def translate(self, shift: float) -> Motion:
         """Return the motion with its deflection counted from so much further; velocities stay."""
         motion = Motion(self.time, self.deflection - shift)
         vars(motion)["velocity"] = self.velocity

@@ -27,7 +27,12 @@ from nrs_design.simulation.periodic import (
     periodic_run,
     time_of_growth,
 )
-from nrs_design.simulation.switched import SwitchedRun, all_modes, alone, mode_eigenvalues
+from nrs_design.simulation.switched import (
+    SwitchedRun,
+    all_modes,
+    mode_eigenvalues,
+    single_mode_system,
+)
 
 _TITLE = "Simulated witness"
 _MODE = "a mode that is not stable"
@@ -133,7 +138,9 @@ def _in_a_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     ((name, _),) = offer.steps
     modes, discrete = (*system.modes, *system.free_motions()), system.time is Time.DISCRETE
     index = [mode.name for mode in modes].index(name)
-    single = replace(alone(replace(system, modes=modes), index), switching=ARBITRARY, clock=None)
+    single = replace(
+        single_mode_system(replace(system, modes=modes), index), switching=ARBITRARY, clock=None
+    )
     (values,) = mode_eigenvalues(single)
     worst = complex(values[np.argmax(np.abs(values) if discrete else values.real)])
     response = periodic_run(single, [(0, time_of_growth(worst, single))]).response

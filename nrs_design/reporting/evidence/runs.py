@@ -20,7 +20,13 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.greedy import greedy_run, relative_norms, slowest
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rules import fitting_step
-from nrs_design.simulation.switched import SwitchedRun, all_modes, alone, fine_step, worst_direction
+from nrs_design.simulation.switched import (
+    SwitchedRun,
+    all_modes,
+    fine_step,
+    single_mode_system,
+    worst_direction,
+)
 
 Bound = tuple[str, Array]
 
@@ -157,7 +163,7 @@ def ruled_run(
         )
     Qs = [functions.get(mode.name, np.eye(system.order)) for mode in played.modes]
     norms = [quadratic_norm(Q) for Q in Qs]
-    directions = [worst_direction(alone(played, k), Q) for k, Q in enumerate(Qs)]
+    directions = [worst_direction(single_mode_system(played, k), Q) for k, Q in enumerate(Qs)]
     try:
         step, _ = horizon(played, rate)
         initial = slowest(played, norms, directions, step, _FIRST)

@@ -93,7 +93,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     paragraphs = [Paragraph(" ".join(said))]
     if any(item.band for item in items):
         paragraphs.append(Paragraph(_PASSIVE))
-    if any(item.problem.loop.contact.remembers for item in items):
+    if any(item.problem.loop.contact.has_memory for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
     figures = _figures(drawn, rest) if drawn else ()
     return Section("Impedance control", (*paragraphs, *tables, *figures))
@@ -137,7 +137,7 @@ def _not_passive(band: PassiveBand | None) -> str:
 
 def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
     """Write a parameter of the nominal contact, if its law has it."""
-    value = item.problem.loop.contact.given().get(key)
+    value = item.problem.loop.contact.spec_fields().get(key)
     return number(float(value), 5) if value is not None else default
 
 

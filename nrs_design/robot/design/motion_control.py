@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.errors import DesignError
@@ -185,13 +185,13 @@ def _drive_numbers(spec: RobotSpec) -> dict[str, float]:
 
 def _proportional_derivative(spec: RobotSpec) -> ProportionalDerivative:
     given, design = control_of(spec).motion_loop, _root_locus(spec)
-    Kd = to_float32(
+    Kd = round_float32(
         Fraction(design.derivative_gain)
         if given.derivative_gain is None
         else given.derivative_gain.exact
     )
     zero = Fraction(design.zero) if given.zero is None else given.zero.exact
-    return ProportionalDerivative(Kp=to_float32(Kd * zero), Kd=Kd)
+    return ProportionalDerivative(Kp=round_float32(Kd * zero), Kd=Kd)
 
 
 def _root_locus(spec: RobotSpec) -> PdDesign:

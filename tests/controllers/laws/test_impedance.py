@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import cont2discrete
 
-from nrs_design.controllers.float32 import is_float32, to_float32
+from nrs_design.controllers.float32 import is_float32, round_float32
 from nrs_design.controllers.laws import Admittance
 
 PERIOD = Fraction(1, 500)
-LAW = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
+LAW = Admittance(round_float32(Fraction("0.01")), round_float32(Fraction("2.15")))
 
 
 @settings(deadline=None)
@@ -31,13 +31,13 @@ def test_exact_steps_are_those_of_a_held_force(Mt, Bt, ms):
 
 def test_one_step_of_euler():
     held = LAW.discretize(PERIOD, "euler").numbers
-    assert held["a"] == to_float32(1 - LAW.Bt * PERIOD / LAW.Mt)
-    assert held["b"] == to_float32(PERIOD / LAW.Mt)
+    assert held["a"] == round_float32(1 - LAW.Bt * PERIOD / LAW.Mt)
+    assert held["b"] == round_float32(PERIOD / LAW.Mt)
 
 
 def test_without_inertia_the_law_has_no_memory():
     held = Admittance(Fraction(0), Fraction(2)).discretize(PERIOD, "exact").numbers
-    assert held == {"b": Fraction(1, 2), "T": to_float32(PERIOD)}
+    assert held == {"b": Fraction(1, 2), "T": round_float32(PERIOD)}
 
 
 def test_a_spring_is_a_coefficient_of_its_own():

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.float32 import round_float32
 from nrs_design.controllers.laws import (
     AbstractCompliantLaw,
     Admittance,
@@ -20,7 +20,7 @@ from nrs_design.spec.controllers import (
 
 F = Fraction
 POSITION = PositionControllerSpec(type="position")
-KP, KI = to_float32(F("0.02")), to_float32(F("0.5"))
+KP, KI = round_float32(F("0.02")), round_float32(F("0.5"))
 GAINS = {"proportional_gain": "0.02 rad/(N*m)", "integral_gain": "0.5 rad/(N*m*s)"}
 CHOSEN = {"environment": "soft", "damping_ratio": "0.741"}
 P = ForceControllerSpec(type="force", environment="soft", proportional_gain="0.02 rad/(N*m)")
@@ -81,11 +81,11 @@ def test_the_force_turns_the_command_back(law, states, command, rates):
 
 def test_gains_are_taken_by_name():
     gains = {"Bt": F(2), "Mt": F(1), "other": F(3)}
-    assert Admittance.of(gains) == Admittance(Mt=F(1), Bt=F(2))
+    assert Admittance.create(gains) == Admittance(Mt=F(1), Bt=F(2))
     with pytest.raises(KeyError, match="Bt"):
-        Admittance.of({"Mt": F(1)})
+        Admittance.create({"Mt": F(1)})
 
 
 def test_a_sample_adds_its_share_of_the_integral_in_single_precision():
     law = IntegralForce(KP, KI).discretize(F(1, 500), "exact")
-    assert law.coefficients == {"Kp": KP, "Ki_T": to_float32(F(1, 1000))}
+    assert law.coefficients == {"Kp": KP, "Ki_T": round_float32(F(1, 1000))}

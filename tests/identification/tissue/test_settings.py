@@ -29,7 +29,7 @@ def test_what_is_none_is_refused_with_what_to_write(entry, message):
 def test_thesis_arm():
     # Thesis 6.3.1.1: 747.1461 N/m at 0.24 m are 43.0356 N m/rad.
     arm = parse_arm("240 mm", rotational=False)
-    assert Elastic(747.1461).at_pivot(arm).k == pytest.approx(43.0356, abs=5e-5)
+    assert Elastic(747.1461).convert_to_pivot(arm).k == pytest.approx(43.0356, abs=5e-5)
 
 
 @pytest.mark.parametrize(("text", "rotational", "reason"), rows(__file__, "test_bad_arm"))

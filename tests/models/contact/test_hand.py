@@ -28,7 +28,7 @@ def test_impedance_at_a_frequency():
     s = 5j
     above, below = HAND.impedance
     assert np.polyval(above, s) / np.polyval(below, s) == pytest.approx(57 / s + 7 + 0.2 * s)
-    assert HAND.at_stiffness(Fraction(60)) == Hand(60, 7.0, 0.2)
+    assert HAND.replace_stiffness(Fraction(60)) == Hand(60, 7.0, 0.2)
 
 
 def test_without_mass_it_is_a_spring_beside_a_damper():
@@ -57,6 +57,6 @@ def test_the_mass_is_never_left_out():
 
 
 def test_at_the_pivot_every_parameter_takes_the_square_of_the_arm():
-    assert Hand(100.0, 10.0, 1.0).at_pivot(0.5) == Hand(25.0, 2.5, 0.25)
+    assert Hand(100.0, 10.0, 1.0).convert_to_pivot(0.5) == Hand(25.0, 2.5, 0.25)
     assert Hand.units(rotational=False) == ("N/m", "N*s/m", "kg")
     assert Hand.units(rotational=True) == ("N*m/rad", "N*m*s/rad", "kg*m^2")

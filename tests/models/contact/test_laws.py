@@ -80,7 +80,7 @@ def test_torque_at_the_pivot(law, radius, seed):
     """Torque is force times lever arm, angle is deflection over lever arm."""
     motion = wobble(seed)
     turned = Motion(motion.time, motion.deflection / radius)
-    torque = law.at_pivot(radius).simulate(turned)
+    torque = law.convert_to_pivot(radius).simulate(turned)
     force = law.simulate(motion)
     assert torque == pytest.approx(radius * force, abs=1e-9 * radius * np.abs(force).max())
 
@@ -161,8 +161,10 @@ def test_what_lags_takes_the_velocity_of_the_moment():
 def test_growing_stiffness(law):
     """Kelvin-Voigt holds its damping; the others grow in proportion, their ratios held."""
     stiff = 3 * law.stiffness
-    larger = KelvinVoigt(stiff, law.b) if isinstance(law, KelvinVoigt) else law.at_pivot(3**0.5)
-    assert law.at_stiffness(Fraction(stiff)).values == pytest.approx(larger.values)
+    larger = (
+        KelvinVoigt(stiff, law.b) if isinstance(law, KelvinVoigt) else law.convert_to_pivot(3**0.5)
+    )
+    assert law.replace_stiffness(Fraction(stiff)).values == pytest.approx(larger.values)
 
 
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
@@ -171,7 +173,7 @@ def test_exact_parameters_stay_exact(law):
     velocity, *states = coordinates(1 + len(law.states))
     force, _ = third.react(velocity, states)
     assert all(entry.denominator in (1, 3) for entry in force)
-    assert third.at_pivot(Fraction(1, 2)).exact == (Fraction(1, 12),) * len(law.values)
+    assert third.convert_to_pivot(Fraction(1, 2)).exact == (Fraction(1, 12),) * len(law.values)
     assert third.texts() == tuple(
         f"{name} = 0.333333 {unit}"
         for name, unit in zip(law.parameters(), law.units(rotational=True), strict=True)
@@ -181,13 +183,13 @@ def test_exact_parameters_stay_exact(law):
 @pytest.mark.parametrize("law", LINEAR, ids=lambda law: law.name)
 def test_what_remembers_says_what_is_kept(law):
     alone = sentences(law.assumptions("nose", is_only=True))
-    assert bool(alone) == law.remembers
+    assert bool(alone) == law.has_memory
     assert all("nose" in text for text in alone)
 
 
 def test_a_memory_is_spoken_of_even_if_its_law_has_no_words_of_its_own():
     class Remembering(AbstractLinearLaw):
-        remembers = True
+        has_memory = True
         states = ("delta [rad]", "stretch [rad]")
 
     kept = "nose keeps delta [rad] and stretch [rad] at a switch and when the parameters change."

@@ -85,14 +85,14 @@ class ControllerDesign:
         moving = [law for law in laws if law.commands == "velocity"]
         return moving or [law for law in laws if law.is_leaky]
 
-    def find_odd_states(self, *, mixed: bool) -> str | None:
+    def find_odd_states(self, *, is_mixture: bool) -> str | None:
         """Return the states that laws do not share, as a text, or None.
 
         `mixed`: the states of some controllers are idle while others are active.
         """
         laws = [controller.law for controller in self.controllers]
-        kinds = {(law.commands, law.states) for law in self.leading_laws(is_mixture=mixed)}
-        if mixed:
+        kinds = {(law.commands, law.states) for law in self.leading_laws(is_mixture=is_mixture)}
+        if is_mixture:
             kinds |= {(law.commands, law.states) for law in laws if law.states and not law.is_leaky}
         if len(kinds) <= 1:
             return None

@@ -64,7 +64,7 @@ def design_from_gains(
 
 
 def free_gains(spec: InteractionDesignSpec) -> Iterator[tuple[str, str]]:
-    """Yield controller and name of every gain that the spec leaves to choose."""
+    """Yield controller and gain name for every gain that the search may choose."""
     for name, controller in spec.controllers.items():
         yield from ((name, gain) for gain, bounds in controller.gains().items() if not bounds.fixed)
     for name, free in spec.design.free.items():
@@ -84,9 +84,9 @@ def apply_free_gains(
     design: ControllerDesign,
     gains: Mapping[str, Mapping[str, str]],
 ) -> ControllerDesign:
-    """Return a design with those of the gains of a certificate that the spec leaves to choose.
+    """Return a design with the free gains of a certificate.
 
-    A `CertificateError` if one is farther from the design than `design.free` allows.
+    A `CertificateError` if a gain is farther from the design than `design.free` allows.
     """
     found: dict[str, dict[str, Fraction]] = {}
     for name, gain in free_gains(spec):
@@ -111,7 +111,7 @@ def _unfreed(spec: InteractionDesignSpec, gains: Numbers) -> Numbers:
 
     A `CertificateError` if one is farther from that than its factors allow.
     """
-    found = {name: dict(own) for name, own in gains.items()}
+    found = {name: dict(law_gains) for name, law_gains in gains.items()}
     for name, free in spec.design.free.items():
         for gain, factors in free.given():
             given = _spec_gain(spec, name, gain)

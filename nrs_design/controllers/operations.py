@@ -19,8 +19,8 @@ from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import StepLogic
 
 V = TypeVar("V")
-# Rounding of a result or an input: with its terms (`term`); as a number of its own, whose rounded
-# value the next operations take (`own`); in proportion to the largest angle (`angle`).
+# Rounding of a result or an input. `term`: each term is rounded. `own`: later operations use the
+# rounded value. `angle`: the bound is proportional to the largest angle.
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
 # Kinds with a coefficient for the left operand.
@@ -34,7 +34,7 @@ class Value:
     name: str  # As the exported code calls it
     symbol: str  # As terms and formulas call it
     unit: str  # Its unit
-    limit: Fraction  # A single-precision number; beyond it, or not a number, the value is refused
+    limit: Fraction  # Single precision; a step refuses larger magnitudes and NaN
     meaning: str  # In words
     rounding: Rounding = "none"  # Rounding of the reading
     # The first value of a state is the measured angle, else zero.
@@ -68,7 +68,7 @@ class Coefficient:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation; of those in `COEFFICIENT_KINDS` the left operand is a coefficient."""
+    """One operation; for `COEFFICIENT_KINDS` the left operand is a coefficient."""
 
     name: str  # Name of the result
     # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
@@ -78,7 +78,7 @@ class Operation:
     left: str
     right: str
     rounding: Rounding = "term"  # Kind of rounding
-    symbol: str = ""  # Name of the result in terms; by default the whole expression
+    symbol: str = ""  # Name of the result in terms; default: the expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +111,7 @@ class StepLaw:
         if len(known | constants) != sum(map(len, parts)):
             raise ValueError("a name occurs twice")
         if set(self.following) != {state.name for state in self.states}:
-            raise ValueError("every state needs the value that follows it, and nothing else")
+            raise ValueError("next values do not match the states")
         results = {operation.name for operation in self.operations}
         if not {*self.outputs.values(), *self.following.values()} <= results:
             raise ValueError("an output, or the next state, is not computed")

@@ -15,7 +15,7 @@ from nrs_design.controllers.operations import Operation, Value
 
 # Limit by default: no robot gets there, and nothing overflows.
 DEFAULT_LIMIT = Fraction(1_000_000)
-# The operand that stands for the force: the sample, or the last lag of its filter.
+# Placeholder operand for the force sample, or for the last lag of the force filter.
 FORCE = "force"
 # Gain from the force to the torque that a law subtracts.
 FORCE_GAIN = "Kf_torque"
@@ -33,10 +33,9 @@ class StepGain:
     name: str
     symbol: str
     unit: str
-    # Number of all laws with the part; None for a number of each law.
+    # Common number of all laws with the part; None if laws have different numbers.
     fixed: Fraction | None = None
-    # Symbol of what a sample leaves of a state while laws without the part are active; empty where
-    # these have zero.
+    # Symbol of the decay factor of a state while laws without the part are active; empty for zero.
     idle: str = ""
     # All laws with the part may hold the same number.
     common: bool = False
@@ -49,11 +48,11 @@ class StepPart:
     name: str
     gains: tuple[StepGain, ...] = ()
     inputs: tuple[Value, ...] = ()
-    # The reference that the part moves, where it has one, and all other states.
+    # Reference state of the part, and the other states.
     place: Value | None = None
     states: tuple[Value, ...] = ()
-    # Before the error of the motion loop, and the result that is added to the commanded position;
-    # the sum with the results of the parts before this one is called `total`.
+    # Operations before the error of the motion loop. `adds` names the result that is added to the
+    # commanded position; `total` names the sum with the results of earlier parts.
     reference_operations: tuple[Operation, ...] = ()
     adds: str = ""
     total: str = ""

@@ -21,7 +21,7 @@ class StepResult:
     # outputs, states: by name; single precision, shape (n,).
     outputs: Mapping[str, Single]
     states: Mapping[str, Single]
-    # Shape (n,). Where a step is not valid, outputs are zero and states stay as they were.
+    # Shape (n,). An invalid step has zero outputs and unchanged states.
     valid: NDArray[np.bool_]
 
 
@@ -82,10 +82,10 @@ class StepProgram:
         return [found[i] for i in self._outputs], [found[i] for i in self._states], True
 
 
-def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) -> StepResult:
+def step(law: StepLaw, mode: NDArray[np.uint32], values: Mapping[str, Single]) -> StepResult:
     """Compute one step for a batch, shape (n,), with one rounding for each operation."""
     program = StepProgram(law)
-    rows = zip(*(given[value.name] for value in law.values), strict=True)
+    rows = zip(*(values[value.name] for value in law.values), strict=True)
     steps = [program.step(k, row) for k, row in zip(mode.tolist(), rows, strict=True)]
     outputs, states, valid = zip(*steps, strict=True)
 

@@ -29,7 +29,7 @@ class Sector:
     low: Fraction  # Least stiffness in N m/rad
     high: Fraction  # Largest one
     torque_noise: Fraction  # Largest error of the torque in N m, with what damping adds
-    angle_noise: Fraction  # Largest error of its angle in rad, with skew and what the surface moves
+    angle_noise: Fraction  # Largest angle error in rad, including skew and surface motion
     reading: Fraction  # Largest error of the angle as it is read, in rad
     surface: Surface  # When the surface may be elsewhere
     surface_speed: Fraction  # Largest speed of the surface in rad/s
@@ -44,7 +44,7 @@ class Sector:
     def need(
         self, factor: Fraction, travel: Fraction = Fraction(0), rounding: Fraction = Fraction(0)
     ) -> Fraction:
-        """Return the torque, in N m, from which on a violation is told whatever the noise is.
+        """Return the smallest torque, in N m, at which every violation is detected despite noise.
 
         `factor` is the stiffness over its range: over the upper end above one, the lower end below.
         In rad: how far the joint moves between two torques that are read, and rounding the same
@@ -56,8 +56,8 @@ class Sector:
         else:
             k = factor * self.low
             gain, lever = 1 / k - 1 / self.low, 1 / k - 1 / self.high
-        # The other sample is the last one in the air where that tells where the surface is, and the
-        # first in which contact is certain otherwise.
+        # Where the surface stays after free motion, the last free sample locates it; otherwise the
+        # first sample with certain contact does.
         if factor > 1 and self.surface != "touched" and not self.contact_maintained:
             return (self.noise() + rounding + travel) / gain
         minimum_torque = k * travel + (0 if self.contact_maintained else 2 * self.torque_noise)

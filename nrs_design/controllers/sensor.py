@@ -80,7 +80,7 @@ class DiscreteLowPass:
 class Sensor:
     """A force sensor, in exact numbers that are not too small."""
 
-    # What may last, by where it comes from: bounds on torques about the pivot in N m.
+    # Steady-state error bounds by source: torques about the pivot in N m.
     errors: Mapping[str, Fraction] = field(default_factory=dict)
     filter: LowPass | None = None  # Filter of the signal
 

@@ -58,7 +58,7 @@ def _check_states(spec: InteractionDesignSpec, design: ControllerDesign) -> None
             remedy="export the gains alone, with --format json",
             at=("controllers", first),
         )
-    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
+    if (odd := design.find_odd_states(is_mixture=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
 
 

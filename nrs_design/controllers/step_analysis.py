@@ -11,7 +11,7 @@ from nrs_design.controllers.operations import Kind, Operation, StepLaw
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine, zero
 
-# Single precision reaches to 2^128; what a bound itself leaves out is far less than the other half.
+# Single precision ends at 2^128. The factor two covers roundings that the bound neglects.
 LARGEST = Fraction(2) ** 127
 # More than all roundings of a step add to a value, over its size.
 SLACK = 1 + Fraction(1, 2**16)
@@ -21,7 +21,7 @@ ONE = Fraction(1)
 
 
 def rounding_share(count: int) -> Fraction:
-    """Return how much so many roundings, 1 to 15, change a term at most, over its size.
+    """Return the bound on the relative error of a term after 1 to 15 roundings.
 
     Rounding to nearest changes a result by at most ``u = 2^-24`` of its size; a fused product and
     sum rounds once less. That is ``n u / (1 - n u)``, and ``n u (1 + 2^-20)`` is not less for n up
@@ -55,7 +55,7 @@ def rounded_terms(
     numbers: Mapping[str, Fraction] | None = None,
     errors: Mapping[str, LinearForm] | None = None,
 ) -> dict[str, tuple[Term, ...]]:
-    """Return what each result is a sum of, and in how many roundings each summand takes part.
+    """Return the terms of each result, each with its number of roundings.
 
     Only of results that are used further on: those whose rounding is their own, the outputs and the
     next states. Of a result with a rounding of its own, the operations after it take the rounded
@@ -116,7 +116,7 @@ def _terms(
         return tuple(
             t.times(ONE, "", int(t.roundings > 0) if rounds_again else added) for t in summands
         )
-    # A sum of exact numbers is off in proportion to itself.
+    # Both operands are exact, so the rounding error is proportional to the sum: one term.
     names = [" + ".join(term.name for term in side) for side in (left, right)]
     name = operation.symbol or f"({names[0]} {'+' if add else '-'} {names[1]})"
     return (Term(name, combine(*((ONE, term.form) for term in summands)), added),)
@@ -144,7 +144,7 @@ _BOUNDS: Mapping[Kind, Callable[[Fraction, Fraction], Fraction]] = {
 
 
 def counted_terms(
-    law: StepLaw, mode: int, given: Mapping[str, LinearForm]
+    law: StepLaw, mode: int, inputs: Mapping[str, LinearForm]
 ) -> dict[str, dict[str, int]]:
     """Return for each result of `rounded_terms` how often its terms are rounded, by name.
 
@@ -155,7 +155,7 @@ def counted_terms(
     symbols = {
         o.name: o.symbol for o in law.operations if o.rounding == "own" and o.kind != "multiply"
     }
-    for name, terms in rounded_terms(law, mode, given).items():
+    for name, terms in rounded_terms(law, mode, inputs).items():
         counts = {t.name: t.roundings for t in terms if t.roundings and any(t.form)}
         if name in symbols and symbols[name] not in counts:
             # One rounding is that of the difference itself.

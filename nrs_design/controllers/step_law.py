@@ -90,7 +90,7 @@ class StepFrame:
 
 
 def step_parts(laws: Collection[DiscreteLaw]) -> tuple[StepPart, ...]:
-    """Return the parts of some laws, each once: first of those that are given a position."""
+    """Return the parts of some laws without repetition, position controllers first."""
     position_laws = [law for law in laws if law.law.commands == "position"]
     ordered = (*position_laws, *(law for law in laws if law not in position_laws))
     names = {name for law in laws for name in law.numbers}
@@ -138,13 +138,13 @@ def build_law(
     places = [part.place for part in parts if part.place is not None]
     states = [state for part in reversed(parts) for state in part.states]
     inputs = {value.name: value for part in parts for value in part.inputs}
-    placed = POSITION.name in inputs
+    takes_position = POSITION.name in inputs
     takes_hand = HAND.name in inputs
     error = Value(
         "error_before",
         "e before",
         "rad",
-        2 * (DEFAULT_LIMIT if placed else limits.angle),
+        2 * (DEFAULT_LIMIT if takes_position else limits.angle),
         "error of motion a sample ago",
         stored="e before [rad]",
     )
@@ -154,8 +154,8 @@ def build_law(
     lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
     following = {name: result for part in parts for name, result in part.following.items()}
     first = {place.name: following[place.name] for place in places}
-    referred = tuple(_referred(parts, placed=placed))
-    reference_name = "reference" if not placed or referred else "position"
+    referred = tuple(_referred(parts, takes_position=takes_position))
+    reference_name = "reference" if not takes_position or referred else "position"
     takes_force = any(gain.name == FORCE_GAIN for part in parts for gain in part.gains)
     motion = (
         () if frame.streams else motion_operations(limits, reference_name, takes_force=takes_force)
@@ -167,7 +167,7 @@ def build_law(
         *(operation for part in reversed(parts) for operation in part.state_operations),
     )
     force = {FORCE: _lagged(frame.order)}
-    # A robot that takes velocities is asked for its position by a spring alone.
+    # With a velocity interface, only a virtual spring needs the measured angle.
     takes_angle = frame.interface is not CommandInterface.VELOCITY or any(
         o.left == "angle" for o in operations
     )
@@ -190,7 +190,7 @@ def build_law(
             replace(o, left=force.get(o.left, o.left), right=force.get(o.right, o.right))
             for o in operations
         ),
-        {"command": _command(frame, reference_name if placed else "", takes_force=takes_force)},
+        {"command": _command(frame, reference_name if takes_position else "", takes_force=takes_force)},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
@@ -219,7 +219,7 @@ def _streamed(part: StepPart) -> StepPart:
     changes: dict[str, dict[str, Any]] = {
         "offset": {"left": "angle"},
         "relative": {"right": newest},
-        # What is used once counts as rounded with the command.
+        # The command alone uses the velocity, so its rounding counts as a term there.
         "velocity": {"rounding": "term", "symbol": ""},
     }
     after = (
@@ -232,7 +232,7 @@ def _streamed(part: StepPart) -> StepPart:
         place=None,
         gains=tuple(gain for gain in part.gains if sprung or gain.name != "T"),
         state_operations=tuple(after),
-        following={name: made for name, made in part.following.items() if name != "reference"},
+        following={name: result for name, result in part.following.items() if name != "reference"},
     )
 
 
@@ -252,9 +252,9 @@ def _coefficients(
 ) -> Iterator[Coefficient]:
     mixed_commands = len({law.law.commands for law in laws}) > 1
     for part in parts:
-        each = [numbers_in_force(law, (part,), idle) for law in laws]
+        law_numbers = [numbers_in_force(law, (part,), idle) for law in laws]
         for gain in part.gains:
-            values = tuple(numbers[gain.name] for numbers in each)
+            values = tuple(numbers[gain.name] for numbers in law_numbers)
             symbols = tuple(gain.symbol if _has(law, part) else gain.idle for law in laws)
             yield Coefficient(
                 gain.name,
@@ -273,7 +273,7 @@ def _measured(limits: StepLimits) -> tuple[Value, ...]:
     return limits.apply_limit(angle), torque
 
 
-def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]:
+def _referred(parts: Iterable[StepPart], *, takes_position: bool) -> Iterator[Operation]:
     """Yield the sum of the commanded position and of all parts."""
     total = ""
     for part in parts:
@@ -281,7 +281,7 @@ def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]
         if part.adds and total:
             yield Operation(part.total, "add", part.adds, total)
         total = part.total if part.adds and total else part.adds or total
-    if placed and total:
+    if takes_position and total:
         yield Operation("reference", "add", "position", total, "angle")
 
 
@@ -319,7 +319,7 @@ def _lagged(order: int) -> str:
 
 
 def _filtered(order: int) -> Iterator[Operation]:
-    """Yield the lags of a filter, one after the other."""
+    """Yield the operations of the filter lags in series."""
     for i in range(1, order + 1):
         yield Operation(f"kept_{i}", "multiply", "p", f"filtered_{i}")
         yield Operation(f"added_{i}", "multiply", "q", _lagged(i - 1))

@@ -207,7 +207,7 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
             remedy="leave Kt out, or give the environment a law that has a rest position",
             at=("controllers", sprung, "Kt"),
         )
-    if (odd := state.design.find_odd_states(mixed=state.idle is not None)) is not None:
+    if (odd := state.design.find_odd_states(is_mixture=state.idle is not None)) is not None:
         yield AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )

@@ -153,7 +153,7 @@ def _wired(
     An `AssemblyError` if the controllers share no state.
     """
     idle, low_pass, motion = conditions.idle, design.sensor.filter, design.motion
-    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
+    if (odd := design.find_odd_states(is_mixture=idle is not None)) is not None:
         raise AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )

@@ -18,8 +18,8 @@ from nrs_design.errors import InternalError
 # Units of motor commands.
 COMMAND_UNITS = ("rpm", "V", "A", "counts")
 COMMON_UNITS = ("", "1", "s", "1/s", "J", "Hz", "%", "N", "N/m", "ms", "samples", "decades", "W")
-# Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
-# these.
+# Units on a rotary axis, and the units on a prismatic axis. Frequencies stay in rad/s: the table
+# does not hold them.
 _SLIDING: Mapping[str, str] = {
     **{same: same for same in COMMON_UNITS},
     "rad": "m",
@@ -94,7 +94,7 @@ def find_axis(states: Iterable[str]) -> AxisType:
     return AxisType.PRISMATIC if units & {"m]", "m/s]"} else AxisType.ROTARY
 
 
-# Of the spec that is read, designed or shown: a sentence about a gain need not be handed its unit.
+# Axis of the current spec. Texts about gains read their units here.
 _CURRENT: ContextVar[AxisType] = ContextVar("axis", default=AxisType.ROTARY)
 
 
@@ -120,7 +120,7 @@ def take(axis: object) -> Token[AxisType]:
 
 @contextmanager
 def axis_context(axis: object) -> Iterator[None]:
-    """Make an axis the `current` one; anything else stands for a rotary axis."""
+    """Set the `current` axis inside a context; unknown values select a rotary axis."""
     token = take(axis)
     try:
         yield

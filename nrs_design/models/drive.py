@@ -20,7 +20,7 @@ Rows = tuple[tuple[Fraction, ...], ...]
 OMEGA = "omega [rad/s]"
 # Symbols of the stiffness and the damping of what a joint touches.
 LOAD = ("k", "b")
-# Symbols of the rates in 1/s at which a memory of what it touches decays, and follows the joint.
+# Symbols of the decay rate and the following rate of an environment memory, in 1/s.
 MEMORY = ("r1", "r2")
 # Symbol of the gain of a motor.
 GAIN = "Km"
@@ -54,7 +54,7 @@ def find_interface(command: str) -> CommandInterface | None:
         for commands in (COMMANDS, SLIDING)
         for interface, unit in commands.items()
     )
-    return next((takes for takes, unit in interfaces if unit == command), None)
+    return next((interface for interface, unit in interfaces if unit == command), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class Drive:
         return len(self.states) + (self.speed is None)
 
     def remembering(self, memory: str, rates: Sequence[Interval]) -> Drive:
-        """Return the drive that moves what remembers a deflection d, at its rates r1 and r2.
+        """Return the drive with the memory state d of an environment, at the rates r1 and r2.
 
         ``d' = r2 (delta - d) - r1 d``, and the spring of what is touched has the length delta - d.
         """
@@ -134,7 +134,7 @@ class Drive:
         )
 
     def fix_values(self, values: Mapping[str, Fraction]) -> Drive:
-        """Return the drive at values of its numbers, at their nominal ones by default."""
+        """Return the drive at fixed values; symbols without a value take their nominal value."""
         known = {s: Interval.point(values.get(s, r.nominal)) for s, r in self.ranges.items()}
         return replace(self, ranges=known)
 
@@ -235,7 +235,8 @@ def position_drive(loop: MotionLoop) -> Drive:
     steady_state = [ONE]
     for row, b in zip(A[:-1], B[:-1], strict=True):
         steady_state.append(-row[0] - b)
-    # In z~ = z - rest * position, the rows lose what the position does to their rest. It goes last.
+    # In z~ = z - steady_state * position, each row loses its share of the position rate. The
+    # position becomes the last state.
     first, *others = (
         [sum((a * r for a, r in zip(row, steady_state, strict=True)), ZERO), *row[1:], b]
         for row, b in zip(A, B, strict=True)

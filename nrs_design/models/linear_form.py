@@ -17,7 +17,7 @@ def combine(*terms: tuple[Fraction, LinearForm]) -> list[Fraction]:
     total = [*form] if factor == 1 else [factor * c if c else ZERO for c in form]
     for factor, form in others:
         pairs = zip(total, form, strict=True)
-        # Most factors are one.
+        # A factor of one is frequent: skip the product.
         if factor == 1:
             total = [(entry + c if entry else c) if c else entry for entry, c in pairs]
         else:

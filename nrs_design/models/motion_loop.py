@@ -128,7 +128,7 @@ class JointMotionLoop:
         return LoadedMotionLoop(self)
 
     def integral(self, output: LinearForm) -> LinearForm:
-        """Return the integral of the command u: the error plus that of omega, which is given."""
+        """Return the integral of the command u: the error plus `output`, the integral of omega."""
         return combine((Fraction(1), coordinates(len(output))[0]), (Fraction(1), output))
 
 

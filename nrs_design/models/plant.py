@@ -21,8 +21,7 @@ class Plant:
     environments: tuple[Environment, ...]
     actuator_ranges: ActuatorRanges  # Where the actuator may be
     given_loop: MotionLoop | None = None  # The closed motion loop, if the spec states it
-    # Inertia at the joint in kg m^2 against which the torque of an environment works; None where
-    # that torque is left out.
+    # Inertia at the joint in kg m^2, which contact torques accelerate. None neglects these torques.
     load_inertia: Fraction | None = None
     # Drive of the joint, if not a first-order motor with velocity commands.
     drive: Drive | None = None
@@ -47,9 +46,9 @@ class Plant:
         return self.zoh_drive
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
-        """Return G: the one that the spec states, else the one that the PD gains make.
+        """Return the closed motion loop G of the spec, else of the PD gains.
 
-        These are in rpm/rad and rpm s/rad, or whatever the actuator takes instead of rpm.
+        The gains are in rpm/rad and rpm s/rad, or whatever the actuator takes instead of rpm.
         """
         return self.given_loop or close_motion_loop(self.actuator, Kp, Kd)
 
@@ -61,7 +60,7 @@ class Plant:
         """Return the environments of these names, in the order of the spec."""
         return tuple(environment for environment in self.environments if environment.name in names)
 
-    def scaled(self, scale: Fraction, touched: Collection[str]) -> Plant:
+    def scaled(self, scale: Fraction, names: Collection[str]) -> Plant:
         """Return the plant with the ranges of actuator and touched environments stretched.
 
         Every parameter is stretched about its nominal value; one that its law does not admit any
@@ -70,7 +69,7 @@ class Plant:
         if scale == 1:
             return self
         environments = (
-            e.scaled(scale) if e.parts or e.name in touched else e for e in self.environments
+            e.scaled(scale) if e.parts or e.name in names else e for e in self.environments
         )
         ranges = self.actuator_ranges.scaled(scale)
         drive = None if self.drive is None else self.drive.scaled(scale)

@@ -41,13 +41,13 @@ class Coverage:
         }
         for name, size in acting.items():
             if size > limits.get(name, 0.0) * _ROUNDING:
-                yield f"the {name} is larger than the proof takes it for"
+                yield f"the {name} exceeds the bound of the proof"
         if errors.friction:
             yield "friction may change its sign within a period"
         angles = None if self.spec.disturbances is None else self.spec.disturbances.largest_angle
         signals = (name for name in ("angle", "reference") if name in run.response.signals)
         if angles is not None and any(abs(run.response[n]).max() > angles.si for n in signals):
-            yield "the angle is larger than the proof takes it for"
+            yield "the angle exceeds the bound of the proof"
         if errors.force_noise:
             yield "the noise of the torque has no bound"
         if errors.jitter:
@@ -80,7 +80,7 @@ class Coverage:
             yield "the law refused samples, and the proof knows no such step"
         if self.system.contact is None or not statement.covers_lost_contact:
             # Each run begins in free motion.
-            yield "contact is lost or made, and the proof takes it for kept"
+            yield "the run makes or loses contact, and the proof assumes constant contact"
         yield from self._surroundings()
         control = self.scenario.control
         # A run without switches breaks one rule only: a longest dwell time.

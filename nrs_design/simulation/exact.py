@@ -31,7 +31,7 @@ TOLERANCE = 1e-12
 POINTS = 2000
 # Steps that one event costs.
 EVENT_STEPS = 250
-# Effects that this engine leaves out, and those of the scenario, if it has any.
+# Effects without a model in this engine: always, and if the scenario has errors.
 LEFT_OUT_EXACTLY = "sampling, delay and rounding of the law, and the limit of the motor's command"
 OMITTED_ERRORS = "friction, resolutions, noise and jitter of the scenario"
 
@@ -93,7 +93,7 @@ class _Engine:
         self.controller, self.since = loop.scenario.control.start, 0.0
         # Sign of the surface that was touched last.
         self.direction = self.surfaces[0].sign if self.surfaces else 1
-        # Surfaces that the robot is below, and those of them that would pull.
+        # Indices of surfaces with positive depth, and with a tensile contact force.
         self.inside, self.pulling = frozenset[int](), frozenset[int]()
         # Bounds of conditions that hold.
         self.satisfied = frozenset[tuple[int, int, int]]()

@@ -82,7 +82,7 @@ class Flow:
         values = states @ self.signals.T * sides + self.tolerances
         rates = states @ self._rates.T * sides
         begin, end, falls, rises = values[:-1], values[1:], rates[:-1], rates[1:]
-        # Where a signal turns, it is above its tangents, which meet after this time.
+        # The end tangents of a turning signal intersect at a lower bound.
         turns = (falls < 0) & (rises > 0)
         slopes = np.where(turns, rises - falls, 1.0)
         intersections = np.where(turns, begin - end + rises * self.h, 0.0) / slopes

@@ -99,5 +99,5 @@ def all_modes(system: SwitchedSystem) -> SwitchedSystem:
 
 def single_mode_system(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     """Return the system that stays in one mode."""
-    mode_alone = system.modes[mode]
-    return replace(system, modes=(mode_alone,), states=system.states[: mode_alone.A.shape[0]])
+    single = system.modes[mode]
+    return replace(system, modes=(single,), states=system.states[: single.A.shape[0]])

@@ -82,7 +82,7 @@ class TimeResponse:
         Numbers are written so that they are read back as the same. `nrs-design audit` and
         `identify` read these columns.
         """
-        # A table has one row for each instant: the last one of a jump.
+        # The table holds the value after each jump.
         is_last = np.append(np.diff(self.t) > 0, True)
         rows = [("time_s", self.t), *((signal.column, row) for signal, row in self._rows())]
         modes = [self.modes[k] for k in self.mode[is_last].tolist()]

@@ -33,7 +33,7 @@ class Tissue:
         return [surface.sign * (theta - surface.at) for surface in self.surfaces]
 
     def _pushes(self, theta: float, omega: float) -> list[float]:
-        """Return the torque of every surface towards it: none of them pulls."""
+        """Return the contact torque of every surface in N m; tensile torques count as zero."""
         triples = zip(self.surfaces, self.depths(theta), self.dampers, strict=True)
         return [
             max(0.0, surface.law.push(depth - damper, surface.sign * omega)) if depth > 0 else 0.0
@@ -50,7 +50,7 @@ class Tissue:
 
     def sample(self, time: float, theta: float, omega: float) -> float:
         """Return `torque`, and note the surfaces that have been met and lost since last time."""
-        contacting = [push > 0 for push in self._pushes(theta, omega)]
+        contacting = [force > 0 for force in self._pushes(theta, omega)]
         triples = zip(self.surfaces, contacting, self.contacting, strict=True)
         for surface, is_met, was_met in triples:
             if is_met != was_met:

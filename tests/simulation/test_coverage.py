@@ -117,7 +117,7 @@ def run_with(**changes):
         # Its peak lies between two instants, perhaps: 8 deg/s is the bound of the proof.
         (
             scenario_with(profile=Profile.sinusoid(np.radians(8) * (1 + 1e-7), 12.0)),
-            ["the velocity command is larger than the proof takes it for"],
+            ["the velocity command exceeds the bound of the proof"],
         ),
         (
             lambda one: scenario_with(surfaces=one.scenario.surfaces * 2)(one),
@@ -146,7 +146,7 @@ def test_contact_that_a_proof_takes_for_kept(certified):
     statement = next(s for s in certified.certificate.statements if s.bound(system))
     for kept in (replace(system, contact=None), system):
         reasons = [*Coverage(designed.spec, kept, statement, alone, one.run).uncovered()]
-        assert reasons == ["contact is lost or made, and the proof takes it for kept"] * (
+        assert reasons == ["the run makes or loses contact, and the proof assumes constant contact"] * (
             kept.contact is None
         )
 
@@ -208,7 +208,7 @@ def test_the_reference_counts_among_the_angles(certified, share, said):
     spec = designed.spec.model_copy(update={"disturbances": given})
     statement = next(s for s in certified.certificate.statements if s.bound(system))
     reasons = [*Coverage(spec, system, statement, one.scenario, one.run).uncovered()]
-    assert ("the angle is larger than the proof takes it for" in reasons) == said
+    assert ("the angle exceeds the bound of the proof" in reasons) == said
 
 
 @pytest.mark.parametrize(

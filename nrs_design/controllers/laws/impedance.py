@@ -103,7 +103,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         """
         return (
             _admittance(
-                sprung="Kt" in number_names, inert="a" in number_names, beside=has_position
+                sprung="Kt" in number_names, inert="a" in number_names, has_position=has_position
             ),
         )
 
@@ -142,20 +142,20 @@ _COMMANDED = Value(
 )
 
 
-def _admittance(*, sprung: bool, inert: bool, beside: bool) -> StepPart:
-    place, successor = (_OFFSET, "next_offset") if beside else (_REFERENCE, "next_reference")
-    commanded = sprung and not beside
+def _admittance(*, sprung: bool, inert: bool, has_position: bool) -> StepPart:
+    place, successor = (_OFFSET, "next_offset") if has_position else (_REFERENCE, "next_reference")
+    commanded = sprung and not has_position
     following = {place.name: successor} | ({"velocity": "next_velocity"} if inert else {})
     return StepPart(
         "admittance",
-        tuple(_gains(sprung=sprung, inert=inert, beside=beside)),
+        tuple(_gains(sprung=sprung, inert=inert, beside=has_position)),
         (HAND,),
         place,
         (*([_VELOCITY] if inert else []), *([_COMMANDED] if commanded else [])),
-        (Operation("taken", "multiply", "takes_offset", "offset"),) if beside else (),
-        "taken" if beside else "",
-        "off" if beside else "",
-        tuple(_moving(sprung=sprung, inert=inert, beside=beside)),
+        (Operation("taken", "multiply", "takes_offset", "offset"),) if has_position else (),
+        "taken" if has_position else "",
+        "off" if has_position else "",
+        tuple(_moving(sprung=sprung, inert=inert, beside=has_position)),
         following | ({"commanded": "next_commanded"} if commanded else {}),
     )
 
@@ -187,7 +187,7 @@ def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:
         yield Operation("next_velocity", "add", "kept", "pushed")
     else:
         yield Operation("velocity", "multiply", "b", force_name, "own", "vm")
-    # The reference moves on with the velocity of before this sample, where it is a state.
+    # With inertia, the step uses the velocity state of the previous sample.
     yield Operation("wanted", "saturate", "velocity_limit", "velocity_command")
     yield Operation("relative", "subtract", "wanted", "velocity")
     yield Operation("moved", "multiply", "T", "relative")

@@ -68,8 +68,8 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     sentences: ClassVar[Mapping[str, str]] = {}
     # The state may decay in the position command of other controllers.
     is_leaky: ClassVar[bool] = False
-    # Assumption on contact while the law is active, beside laws with another kind of command: by
-    # default contact is never lost. None for no assumption.
+    # Id of the assumption on contact under this law, for designs with velocity and position
+    # commands. Default: contact is never lost. None: no assumption.
     contact_kept: ClassVar[str | None] = "never"
 
     @property
@@ -87,7 +87,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
 
     @abstractmethod
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
-        """Return the command, and the rates of the `states`, as linear forms of the whole loop.
+        """Return the command and the rates of the `states` as linear forms of the loop state.
 
         The force is that of all contacts on the robot and of the `spring`, in N m.
         """
@@ -114,22 +114,22 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         """Return the names of the gains that a controller of a spec has; by default all."""
         return tuple(cls.units)
 
-    def find_fault(self, given: S) -> str | None:
+    def find_fault(self, spec: S) -> str | None:
         """Return the fault of a gain that the spec does not allow, beyond bounds and ranges.
 
         The spec may give the gains of `fixed`, and bounds all others.
         """
         for gain, value in self.gains.items():
             if gain in self.fixed:
-                said = getattr(given, self.fixed[gain])
-                if said is not None and value != round_float32(exact_number(said)):
+                fixed_value = getattr(spec, self.fixed[gain])
+                if fixed_value is not None and value != round_float32(exact_number(fixed_value)):
                     return f"gain {gain} is not what the spec fixes"
-            elif gain not in given.gains():
+            elif gain not in spec.gains():
                 return f"gain {gain} has no bounds in the spec"
         return None
 
 
-# A law that fits its spec: who takes both from one controller need not ask which.
+# Any law: the type of its spec follows from the controller.
 CompliantLaw = AbstractCompliantLaw[Any]
 
 

@@ -1,4 +1,4 @@
-"""PI force control beside other controllers, with an integral that bleeds while they are active.
+"""PI force control with an integral that decays while another controller is active.
 
 The thesis takes a PI for impossible under switching "due to the integral term" (6.3.3). It is
 possible where two things are said of the integral w. In contact under force control it integrates
@@ -21,8 +21,8 @@ from nrs_design.controllers.parts import DEFAULT_LIMIT, PROPORTIONAL, StepGain, 
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, IntegralControllerSpec
 
-# The integral w of the force error is in the reference of every mode. It goes on where the force is
-# controlled with it, w = w + Ki_T (Fd - F), and bleeds in all other modes, w = g w.
+# The reference of every mode contains the integral w of the force error. PI force control updates
+# w = w + Ki_T (Fd - F). In all other modes w decays: w = g w.
 INTEGRAL = StepPart(
     "integral",
     (

@@ -34,7 +34,7 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
 
     @classmethod
     def gain_names(cls, spec: TorqueImpedanceSpec) -> tuple[str, ...]:
-        """Return the names of the gains; R needs a value other than 1 in the spec."""
+        """Return the gain names: K and D, with R if the spec scales the inertia."""
         return ("K", "D") if spec.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:

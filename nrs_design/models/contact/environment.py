@@ -35,7 +35,7 @@ class Environment:
 
     @property
     def depends(self) -> bool:
-        """Whether stiffness and damping depend on each other, so that corners may be missed."""
+        """Whether stiffness and damping are coupled, so that some corners may not occur."""
         return self.preloaded or (self.each_losable and bool(self.law.parallel_damping))
 
     @property
@@ -76,7 +76,7 @@ class Environment:
 
     @property
     def memory_rates(self) -> tuple[Interval, Interval] | None:
-        """Ranges of the rates of its law in 1/s; None where it has no memory of its own."""
+        """Ranges of the memory rates of the law in 1/s; None without memory."""
         law_rates = [law.memory_rates for law in (self.nominal, *self.corners)]
         found = [rates for rates in law_rates if rates is not None]
         if not found:
@@ -93,8 +93,8 @@ class Environment:
             parts = tuple(part.scaled(scale) for part in self.parts)
             return touch_at_once(parts, losable=self.each_losable)
         ranges = tuple(interval.scaled(scale) for interval in self.ranges)
-        each = zip(self.law.parameters(), self.law.kinds, ranges, strict=True)
-        for parameter, kind, interval in each:
+        triples = zip(self.law.parameters(), self.law.kinds, ranges, strict=True)
+        for parameter, kind, interval in triples:
             if fault := self.law.find_fault(parameter, interval.low):
                 raise AssemblyError(
                     f"with its ranges scaled by {float(scale):.6g}, environment {self.name} "

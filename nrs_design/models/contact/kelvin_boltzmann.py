@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KelvinBoltzmann(AbstractLinearLaw):
-    """A spring k2, followed by a spring k1 beside a damper b."""
+    """A spring k2 in series with a Kelvin-Voigt element (spring k1, damper b)."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
     sentences: ClassVar[Mapping[str, str]] = {
@@ -126,7 +126,7 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
     @property
     def element(self) -> Element:
-        """The spring k2, and behind it the spring k1 beside the damper."""
+        """The spring k2 in series with the parallel spring k1 and damper."""
         return Element(float(self.k2), h=float(self.k1), b=float(self.b))
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:

@@ -46,7 +46,7 @@ class Element:
     # k, c: stiffness in N/m (N m/rad) and damping in N s/m (N m s/rad).
     k: float
     c: float = 0.0
-    # h, b: of the spring and the damper behind it, in the same units; b is infinite without memory.
+    # h, b: stiffness and damping of the series element; b is infinite without memory.
     h: float = 0.0
     b: float = math.inf
 
@@ -143,10 +143,10 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     # Keys of the parameters in a spec, in their order.
     keys: ClassVar[tuple[str, ...]]
-    # Parameters in one over which `react` is affine, and those that may be zero.
+    # Parameters with `react` affine in their inverse; parameters that may be zero.
     inverse: ClassVar[frozenset[str]] = frozenset()
     may_vanish: ClassVar[frozenset[str]] = frozenset()
-    # The stiffness that a sudden motion meets, and the damping beside it; "" without one.
+    # Names of the instantaneous stiffness and of the parallel damping ("" without damping).
     front: ClassVar[str]
     parallel_damping: ClassVar[str] = ""
     # The states of `react`; the first is the one that all environments of a spec share.
@@ -179,7 +179,7 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     @abstractmethod
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:
-        """Return the force, and the rates of the states, as linear forms of the whole loop.
+        """Return the force and the rates of the states as linear forms of the loop state.
 
         The exact state space of `impedance`, pushed at a velocity in rad/s: affine in each
         parameter, or in its inverse.
@@ -188,7 +188,7 @@ class AbstractLinearLaw(AbstractContactLaw):
     def react_accelerated(
         self, velocity: LinearForm, acceleration: LinearForm, states: Sequence[LinearForm]
     ) -> Reaction:
-        """Return what `react` does, with the acceleration in rad/s^2, which only a mass takes."""
+        """Return force and rates as `react`, with the acceleration in rad/s^2 for a mass."""
         return self.react(velocity, states)
 
     @property
@@ -314,7 +314,7 @@ class AbstractMemorylessLaw(AbstractLinearLaw):
 
     @property
     def element(self) -> Element:
-        """The spring, and the damper beside it."""
+        """The spring and the parallel damper."""
         return Element(*self.values)
 
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:

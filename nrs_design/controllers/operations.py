@@ -19,11 +19,10 @@ from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import StepLogic
 
 V = TypeVar("V")
-# Rounding of a result or an input. `term`: each term is rounded. `own`: later operations use the
-# rounded value. `angle`: the bound is proportional to the largest angle.
+# Rounding model of an input or a result; `step_analysis.rounded_terms` defines the models.
 Rounding = Literal["term", "own", "angle", "none"]
 Kind = Literal["add", "subtract", "multiply", "saturate"]
-# Kinds with a coefficient for the left operand.
+# Kinds with a coefficient for the first operand.
 COEFFICIENT_KINDS: frozenset[Kind] = frozenset({"multiply", "saturate"})
 
 
@@ -68,15 +67,15 @@ class Coefficient:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation; for `COEFFICIENT_KINDS` the left operand is a coefficient."""
+    """One operation; for `COEFFICIENT_KINDS` the first operand is a coefficient."""
 
     name: str  # Name of the result
-    # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
-    # ``saturate``: right within plus and minus a coefficient.
+    # ``add``, ``subtract``: first plus or minus second. ``multiply``: a coefficient times second.
+    # ``saturate``: second within plus and minus a coefficient.
     kind: Kind
-    # left, right: names of values, of coefficients, or of results of operations before.
-    left: str
-    right: str
+    # first, second: names of values, of coefficients, or of results of operations before.
+    first: str
+    second: str
     rounding: Rounding = "term"  # Kind of rounding
     symbol: str = ""  # Name of the result in terms; default: the expression
 
@@ -104,7 +103,7 @@ class StepLaw:
         known, constants = {value.name for value in self.values}, {*self.coefficient}
         for operation in self.operations:
             lefts = constants if operation.kind in COEFFICIENT_KINDS else known
-            if operation.left not in lefts or operation.right not in known:
+            if operation.first not in lefts or operation.second not in known:
                 raise ValueError(f"{operation.name} is computed from what is not there")
             known.add(operation.name)
         parts = (self.values, self.coefficients, self.operations)
@@ -141,6 +140,6 @@ class StepLaw:
         """
         found = dict(inputs)
         for operation in self.operations:
-            left, right = found[operation.left], found[operation.right]
+            left, right = found[operation.first], found[operation.second]
             found[operation.name] = compute[operation.kind](left, right)
         return found

@@ -55,7 +55,7 @@ class StepProgram:
         places = {name: i for i, name in enumerate(names)}
         self._operations = []
         for operation in law.operations:
-            operands = places[operation.left], places[operation.right]
+            operands = places[operation.first], places[operation.second]
             self._operations.append((_COMPUTED[operation.kind], *operands))
             places[operation.name] = len(places)
         self._outputs = [places[name] for name in law.outputs.values()]

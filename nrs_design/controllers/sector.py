@@ -56,8 +56,8 @@ class Sector:
         else:
             k = factor * self.low
             gain, lever = 1 / k - 1 / self.low, 1 / k - 1 / self.high
-        # Where the surface stays after free motion, the last free sample locates it; otherwise the
-        # first sample with certain contact does.
+        # The last sample in free motion locates a surface that does not move at contact. Otherwise
+        # the first sample with certain contact locates the surface.
         if factor > 1 and self.surface != "touched" and not self.contact_maintained:
             return (self.noise() + rounding + travel) / gain
         minimum_torque = k * travel + (0 if self.contact_maintained else 2 * self.torque_noise)

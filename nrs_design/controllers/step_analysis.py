@@ -9,7 +9,7 @@ from fractions import Fraction
 from nrs_design.controllers.float32 import PRECISION
 from nrs_design.controllers.operations import Kind, Operation, StepLaw
 from nrs_design.errors import DesignError
-from nrs_design.models.linear_form import LinearForm, combine, zero
+from nrs_design.models.linear_form import ONE, LinearForm, combine, zero
 
 # Single precision ends at 2^128. The factor two covers roundings that the bound neglects.
 LARGEST = Fraction(2) ** 127
@@ -17,7 +17,6 @@ LARGEST = Fraction(2) ** 127
 SLACK = 1 + Fraction(1, 2**16)
 # Half a unit in the last place, over the number.
 UNIT = Fraction(1, 2**PRECISION)
-ONE = Fraction(1)
 
 
 def rounding_share(count: int) -> Fraction:
@@ -92,18 +91,18 @@ def _terms(
     terms: Mapping[str, tuple[Term, ...]],
     numbers: Mapping[str, Fraction],
 ) -> tuple[Term, ...]:
-    right = terms[operation.right]
+    right = terms[operation.second]
     if operation.kind == "saturate":
         return right
     if operation.kind == "multiply":
-        coefficient = law.coefficient[operation.left]
+        coefficient = law.coefficient[operation.first]
         factor = coefficient.number(mode)
         if factor in (0, 1):
             # Both products are exact.
             return right if factor else ()
-        factor = numbers.get(operation.left, factor)
+        factor = numbers.get(operation.first, factor)
         return tuple(term.times(factor, f"{coefficient.mode_symbol(mode)} ", 1) for term in right)
-    add, left = operation.kind == "add", terms[operation.left]
+    add, left = operation.kind == "add", terms[operation.first]
     sign = ONE if add else -ONE
     if not left or not right:
         # A sum with zero is exact.

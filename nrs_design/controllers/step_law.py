@@ -169,7 +169,7 @@ def build_law(
     force = {FORCE: _lagged(frame.order)}
     # With a velocity interface, only a virtual spring needs the measured angle.
     takes_angle = frame.interface is not CommandInterface.VELOCITY or any(
-        o.left == "angle" for o in operations
+        o.first == "angle" for o in operations
     )
     return StepLaw(
         tuple(laws),
@@ -187,10 +187,14 @@ def build_law(
             *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
         ),
         tuple(
-            replace(o, left=force.get(o.left, o.left), right=force.get(o.right, o.right))
+            replace(o, first=force.get(o.first, o.first), second=force.get(o.second, o.second))
             for o in operations
         ),
-        {"command": _command(frame, reference_name if takes_position else "", takes_force=takes_force)},
+        {
+            "command": _command(
+                frame, reference_name if takes_position else "", takes_force=takes_force
+            )
+        },
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
@@ -217,8 +221,8 @@ def _streamed(part: StepPart) -> StepPart:
     newest = part.following.get("velocity", "velocity")
     sprung = "commanded" in part.following
     changes: dict[str, dict[str, Any]] = {
-        "offset": {"left": "angle"},
-        "relative": {"right": newest},
+        "offset": {"first": "angle"},
+        "relative": {"second": newest},
         # The command alone uses the velocity, so its rounding counts as a term there.
         "velocity": {"rounding": "term", "symbol": ""},
     }
@@ -238,12 +242,12 @@ def _streamed(part: StepPart) -> StepPart:
 
 def _clamped(part: StepPart) -> StepPart:
     """Return the part of an integral that is cut off: what is summed up saturates, unrounded."""
-    made = part.following.get("integral")
-    if made is None:
+    integral = part.following.get("integral")
+    if integral is None:
         return part
     *before, last = part.state_operations
     summed = replace(last, name="summed_integral")
-    limit = Operation(made, "saturate", INTEGRAL_LIMIT, summed.name)
+    limit = Operation(integral, "saturate", INTEGRAL_LIMIT, summed.name)
     return replace(part, state_operations=(*before, summed, limit))
 
 
@@ -301,8 +305,8 @@ def motion_operations(
         yield Operation("easing", "multiply", FORCE_GAIN, FORCE)
         yield Operation("eased", "subtract", "command", "easing")
     if limits.command is not None:
-        made = "eased" if takes_force else "command"
-        yield Operation("limited_command", "saturate", "command_limit", made)
+        source = "eased" if takes_force else "command"
+        yield Operation("limited_command", "saturate", "command_limit", source)
 
 
 def _lags(order: int) -> Iterator[Value]:

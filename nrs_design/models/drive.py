@@ -13,9 +13,9 @@ from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import ONE, ZERO
 from nrs_design.models.motion_loop import MotionLoop
 
-ONE, ZERO = Fraction(1), Fraction(0)
 Rows = tuple[tuple[Fraction, ...], ...]
 OMEGA = "omega [rad/s]"
 # Symbols of the stiffness and the damping of what a joint touches.

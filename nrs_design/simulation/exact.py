@@ -80,9 +80,9 @@ class _Location:
 class _Engine:
     """A run of the hybrid loop, up to now."""
 
-    def __init__(self, loop: Loop, max_steps: int, tell: Progress) -> None:
+    def __init__(self, loop: Loop, max_steps: int, report: Progress) -> None:
         """Begin at rest, free of contact."""
-        self.loop, self.max_steps, self.report = loop, max_steps, tell
+        self.loop, self.max_steps, self.report = loop, max_steps, report
         self.locations: dict[tuple[object, ...], _Location] = {}
         self.switches: list[tuple[float, str]] = []
         self.contacts: list[tuple[float, str, bool]] = []
@@ -290,7 +290,7 @@ class _Engine:
         # Torques below the tolerance of contact are zero.
         stiffest = max((element.k for element in self.loop.elements), default=0.0)
         torque = np.where(np.abs(torque) <= 4 * TOLERANCE * (1 + stiffest), 0.0, torque)
-        depths = [np.zeros_like(angle), *(s.sign * (angle - s.at) for s in self.surfaces)]
+        depths = [np.zeros_like(angle), *(s.sign * (angle - s.angle) for s in self.surfaces)]
         states = states.T.copy()
         return TimeResponse(
             times,

@@ -143,7 +143,7 @@ class Loop:
     def depth(self, j: int) -> Array:
         """Return the row of the depth below a surface, less what its damper keeps, in rad."""
         surface = self.scenario.surfaces[j]
-        row = surface.sign * (self.angle - surface.at * self.row("one"))
+        row = surface.sign * (self.angle - surface.angle * self.row("one"))
         return row - self.row(f"damper {j + 1}") if j in self._memories else row
 
     def push(self, j: int, velocity: Array) -> Array:

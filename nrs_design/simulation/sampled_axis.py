@@ -71,7 +71,7 @@ def draw_samples(
             successor = automaton.miss[state]
             missed[k] = attempts[k] and successor is not None
             state = automaton.hit[state] if successor is None or not attempts[k] else successor
-    columns = (times, scenario.profile.at(times), noise, ages, lates, missed)
+    columns = (times, scenario.profile.evaluate(times), noise, ages, lates, missed)
     rows = zip(*(column.tolist() for column in columns), strict=True)
     return [SampleInputs(*row) for row in rows]
 

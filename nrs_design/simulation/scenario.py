@@ -61,7 +61,7 @@ class Profile:
         ]
         return cls((*pieces, Piece(float(times[-1]), float(velocities[-1]), 0.0)))
 
-    def at(self, time: Array) -> Array:
+    def evaluate(self, time: Array) -> Array:
         """Return the velocity at times in s, after jumps."""
         columns = np.array([(piece.start, piece.value, piece.slope) for piece in self.pieces]).T
         index = np.clip(np.searchsorted(columns[0], time, side="right") - 1, 0, None)
@@ -81,7 +81,7 @@ class Surface:
     environment: str  # Its name
     # At the pivot, at fixed parameters: springs and dampers of a linear law, or a nonlinear one.
     law: Element | AbstractNonlinearLaw
-    at: float  # Angle in rad
+    angle: float  # In rad
     sign: int  # 1 if rising angles lead into it, else -1
 
     @property

@@ -30,7 +30,7 @@ class Tissue:
 
     def depths(self, theta: float) -> list[float]:
         """Return the depth of an angle in rad below every surface."""
-        return [surface.sign * (theta - surface.at) for surface in self.surfaces]
+        return [surface.sign * (theta - surface.angle) for surface in self.surfaces]
 
     def _pushes(self, theta: float, omega: float) -> list[float]:
         """Return the contact torque of every surface in N m; tensile torques count as zero."""

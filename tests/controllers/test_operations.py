@@ -23,7 +23,7 @@ def test_a_list_that_does_not_fit_is_refused():
         {"operations": (*good.operations, replace(sums[0], name="more", kind="multiply"))},
         {"following": {}},
         {"outputs": {"command": "nothing"}},
-        {"operations": (replace(first, right="nothing"), *others)},
+        {"operations": (replace(first, second="nothing"), *others)},
         {"modes": ("one", "two", "three")},
         {"coefficients": (third, *good.coefficients[1:])},
     ):

@@ -181,13 +181,13 @@ def one(name, **other):
 
 def velocity_first(found):
     """Let the reference move on with the velocity of after the sample."""
-    return [replace(o, right="next_velocity") if o.name == "relative" else o for o in found]
+    return [replace(o, second="next_velocity") if o.name == "relative" else o for o in found]
 
 
 ALTERED = {
     "as it is": ("motion", lambda found: found),
     "a sign": ("motion", one("command", kind="subtract")),
-    "a coefficient": ("motion", one("proportional", left="Kd_over_T")),
+    "a coefficient": ("motion", one("proportional", first="Kd_over_T")),
     "an order": ("admittance", velocity_first),
     "a rounding": ("admittance", one("next_velocity", rounding="own", symbol="w")),
 }
@@ -213,7 +213,7 @@ def test_a_rounded_number_taken_somewhere_new_is_refused(alter):
     alter("motion", lambda found: [*found, again])
     list_law(0, kinds_of([MOVING]))
     # Not used any further, it is nothing.
-    alter("motion", one("derivative", right="error"))
+    alter("motion", one("derivative", second="error"))
     with pytest.raises(InternalError, match="second order of D e is not bounded"):
         list_law(0, kinds_of([MOVING]))
 

@@ -146,9 +146,9 @@ def test_contact_that_a_proof_takes_for_kept(certified):
     statement = next(s for s in certified.certificate.statements if s.bound(system))
     for kept in (replace(system, contact=None), system):
         reasons = [*Coverage(designed.spec, kept, statement, alone, one.run).uncovered()]
-        assert reasons == ["the run makes or loses contact, and the proof assumes constant contact"] * (
-            kept.contact is None
-        )
+        assert reasons == [
+            "the run makes or loses contact, and the proof assumes constant contact"
+        ] * (kept.contact is None)
 
 
 ENDING = "command: {points: [[0 s, 6 deg/s], [0.5 s, 6 deg/s], [0.5 s, 0 deg/s], [3 s, 0 deg/s]]}, "

@@ -12,10 +12,8 @@ from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, R
 from nrs_design.controllers.operations import Operation, Value
 from nrs_design.controllers.parts import DEFAULT_LIMIT, FORCE, HAND, StepGain, StepPart
 from nrs_design.controllers.taylor import exponential_between
-from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.models.linear_form import ONE, LinearForm, combine
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
-
-ONE = Fraction(1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,20 +146,20 @@ def _admittance(*, sprung: bool, inert: bool, has_position: bool) -> StepPart:
     following = {place.name: successor} | ({"velocity": "next_velocity"} if inert else {})
     return StepPart(
         "admittance",
-        tuple(_gains(sprung=sprung, inert=inert, beside=has_position)),
+        tuple(_gains(sprung=sprung, inert=inert, has_position=has_position)),
         (HAND,),
         place,
         (*([_VELOCITY] if inert else []), *([_COMMANDED] if commanded else [])),
         (Operation("taken", "multiply", "takes_offset", "offset"),) if has_position else (),
         "taken" if has_position else "",
         "off" if has_position else "",
-        tuple(_moving(sprung=sprung, inert=inert, beside=has_position)),
+        tuple(_moving(sprung=sprung, inert=inert, has_position=has_position)),
         following | ({"commanded": "next_commanded"} if commanded else {}),
     )
 
 
-def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
-    if beside:
+def _gains(*, sprung: bool, inert: bool, has_position: bool) -> Iterator[StepGain]:
+    if has_position:
         yield StepGain("takes_offset", "", "1", ONE)
         yield StepGain("d", "d", "1", ONE, "d")
     if sprung:
@@ -173,10 +171,10 @@ def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
     yield StepGain("T", "T", "s", common=True)
 
 
-def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:
+def _moving(*, sprung: bool, inert: bool, has_position: bool) -> Iterator[Operation]:
     if sprung:
         # At a sample the spring takes the offset of before the reference moves on.
-        if not beside:
+        if not has_position:
             yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
         yield Operation("pull", "multiply", "Kt", "offset")
         yield Operation("felt", "add", FORCE, "pull")
@@ -191,7 +189,7 @@ def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:
     yield Operation("wanted", "saturate", "velocity_limit", "velocity_command")
     yield Operation("relative", "subtract", "wanted", "velocity")
     yield Operation("moved", "multiply", "T", "relative")
-    if beside:
+    if has_position:
         yield Operation("left", "multiply", "d", "offset")
         yield Operation("next_offset", "add", "left", "moved", "angle")
         return

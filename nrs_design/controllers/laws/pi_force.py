@@ -21,8 +21,8 @@ from nrs_design.controllers.parts import DEFAULT_LIMIT, PROPORTIONAL, StepGain, 
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, IntegralControllerSpec
 
-# The reference of every mode contains the integral w of the force error. PI force control updates
-# w = w + Ki_T (Fd - F). In all other modes w decays: w = g w.
+# Integral w of the force error. PI force control updates w = w + Ki_T (Fd - F), the remaining modes
+# w = g w. The reference contains w in all modes.
 INTEGRAL = StepPart(
     "integral",
     (

@@ -78,7 +78,7 @@ def source_text(program: Program) -> str:
 
 
 def _expression(law: StepLaw, names: CNames, operation: Operation) -> str:
-    left, right = (_operand(law, names, name) for name in (operation.left, operation.right))
+    left, right = (_operand(law, names, name) for name in (operation.first, operation.second))
     if operation.kind == "saturate":
         return f"saturated({right}, {left})"
     return f"{left} {SIGN[operation.kind]} {right}"

@@ -126,5 +126,5 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
 
 def _sum(intervals: Sequence[Interval]) -> Interval:
     ends = ((i.nominal, i.low, i.high) for i in intervals)
-    nominal, low, high = (sum(each, Fraction(0)) for each in zip(*ends, strict=True))
+    nominal, low, high = (sum(values, Fraction(0)) for values in zip(*ends, strict=True))
     return Interval(nominal, low, high)

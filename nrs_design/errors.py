@@ -13,7 +13,7 @@ class Fault:
     """One thing that is wrong with a file."""
 
     message: str  # Error, and expected value
-    # line, column: where, counted from 1, as far as it is known.
+    # line, column: position from 1; None if unknown.
     line: int | None = None
     column: int | None = None
     remedy: str | None = None  # Advice
@@ -59,7 +59,7 @@ class NrsDesignError(Exception):
         return (Fault(self.message, self.line, self.column, self.remedy),)
 
     @property
-    def more(self) -> str:
+    def count_text(self) -> str:
         """Number of further faults, such as ``; 2 more faults in this file``."""
         count = len(self.faults) - 1
         return f"; {count} more fault{'s' * (count > 1)} in this file" if count else ""
@@ -67,7 +67,7 @@ class NrsDesignError(Exception):
     def __str__(self) -> str:
         """One line: place, fault and remedy of the first, and how many more there are."""
         text = f"{self.location}: {self.message}" if self.location else self.message
-        return (f"{text} ({self.remedy})" if self.remedy else text) + self.more
+        return (f"{text} ({self.remedy})" if self.remedy else text) + self.count_text
 
 
 class SpecError(NrsDesignError):
@@ -77,10 +77,10 @@ class SpecError(NrsDesignError):
     """
 
     rule = "NRS001"
-    _others: tuple[Fault, ...] = ()
+    _later_faults: tuple[Fault, ...] = ()
 
     @classmethod
-    def of(cls, faults: Sequence[Fault], path: Path | None) -> Self:
+    def combine(cls, faults: Sequence[Fault], path: Path | None) -> Self:
         """Make one error of all the faults of a file, of which there is at least one."""
         first, *others = sorted(faults, key=lambda fault: (fault.line or 0, fault.column or 0))
         error = cls(
@@ -90,13 +90,13 @@ class SpecError(NrsDesignError):
             column=first.column,
             remedy=first.remedy,
         )
-        error._others = tuple(others)
+        error._later_faults = tuple(others)
         return error
 
     @property
     def faults(self) -> tuple[Fault, ...]:
         """Everything that is wrong, in file order."""
-        return (*super().faults, *self._others)
+        return (*super().faults, *self._later_faults)
 
 
 class DesignError(NrsDesignError):
@@ -118,13 +118,13 @@ class CertificateError(NrsDesignError):
 
 
 class OutputError(NrsDesignError):
-    """A result that cannot be written where it was asked for."""
+    """A result that cannot be written to the requested path."""
 
     rule = "NRS005"
 
 
 class ClockError(NrsDesignError):
-    """Work that the clock stopped before its budget was used up: nothing is decided."""
+    """Work that the watchdog timer stopped before the end of its budget, without a decision."""
 
     rule = "NRS008"
 

@@ -17,7 +17,7 @@ MAX_JSON_VALUES = 1_000_000
 DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(10))]
 )
-# First bytes of pages, which may lie beside specs and certificates of the same name.
+# First bytes of HTML and PDF pages.
 _PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
 
 

@@ -22,7 +22,7 @@ C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a
 C_MONITOR = b"/* nrs-design C monitor\n"
 C_MONITOR_HEADER = b"/* nrs-design C header of a monitor\n"
 CMAKE = b"# nrs-design CMake file\n"
-# The first entry of the archive, which is stored as it is, and always the same.
+# The first archive entry: constant and without compression.
 FMU = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\x8f*\x87r\x0f\x00\x00\x00\x0f\x00\x00\x00"
     b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
@@ -34,7 +34,7 @@ SCHEMA = (
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
     b'  "title": "nrs-design export",\n',
 )
-# Records of others may begin with some of these columns: all that are always there count.
+# Foreign records may share some columns. The pattern requires every fixed column.
 RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
 )
@@ -52,7 +52,7 @@ GATE = re.compile(
 # Second line of a figure in its own file.
 SVG_MARK = "<!-- nrs-design figure -->\n"
 SVG = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{SVG_MARK}'.encode()
-# An entry of each image, which tells it from those of other programs.
+# Metadata entry that identifies our images.
 MAKER = "nrs-design"
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
@@ -71,7 +71,7 @@ def check_html(path: Path) -> None:
 
 
 def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:
-    """Write a file through a temporary one beside it, so that no half-written file is left.
+    """Write a file atomically, through a temporary file in the same folder.
 
     Its folder is made. A file that is there is replaced if it begins as `replaces` says, or is
     empty. A link, a folder or a device (here or on Windows) is an `OutputError`.
@@ -80,35 +80,35 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
 
 
 def write_outputs(outputs: Collection[Output]) -> None:
-    """Write all files of one result, or none if one of them is refused or fails."""
+    """Write all files of a result, or none of them after an error."""
     places = set[Path]()
     for path, _, replaces in outputs:
         check_place(path, replaces)
         if (place := path.absolute()) in places:
             raise OutputError("is named for two files", path=path, remedy="name another file")
         places.add(place)
-    written: list[tuple[str, Path]] = []
+    temporaries: list[tuple[str, Path]] = []
     try:
         for path, content, _ in outputs:
-            with _told(path):
-                _write_beside(path, content, written)
-        while written:
-            temporary, path = written[0]
-            with _told(path):
+            with _name_file(path):
+                _write_temporary(path, content, temporaries)
+        while temporaries:
+            temporary, path = temporaries[0]
+            with _name_file(path):
                 os.replace(temporary, path)
-            del written[0]
+            del temporaries[0]
     finally:
-        for temporary, _ in written:
+        for temporary, _ in temporaries:
             os.unlink(temporary)
 
 
-def _write_beside(path: Path, content: str | bytes, written: list[tuple[str, Path]]) -> None:
+def _write_temporary(path: Path, content: str | bytes, temporaries: list[tuple[str, Path]]) -> None:
     """Write a temporary file into the folder of a place, and note it before it is filled."""
     # A file name that is no text may have got in; it is shown with escapes.
     data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    written.append((temporary, path))
+    temporaries.append((temporary, path))
     with os.fdopen(handle, "wb") as file:
         file.write(data)
     os.chmod(temporary, 0o644)
@@ -118,7 +118,7 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
     """Refuse, before the work, a place to which its result could not be written."""
     if is_device_name(path.name):
         raise OutputError("names a device on Windows", path=path, remedy="name another file")
-    with _told(path):
+    with _name_file(path):
         _refuse_links(path)
         _refuse_foreign(path, replaces)
         folder = next(folder for folder in path.parents if folder.exists())
@@ -130,8 +130,8 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
 
 
 @contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
-    """Wait until no other process of ours is in a folder, and keep others out meanwhile.
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Lock a folder against other processes of nrs-design; wait for the lock.
 
     What is read, changed and written again would lose what another one writes in between. The
     system lets go when a process ends, however it ends. Where it has no such lock (Windows, some
@@ -144,7 +144,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         return
     # The folder must exist: a lock on its parent would not exclude later processes.
     _refuse_links(folder)
-    with _told(folder):
+    with _name_file(folder):
         folder.mkdir(parents=True, exist_ok=True)
     handle = os.open(folder, os.O_RDONLY)
     try:
@@ -156,7 +156,7 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _name_file(path: Path) -> Iterator[None]:
     """Turn an error of the system into one that names the file."""
     try:
         yield
@@ -174,8 +174,8 @@ def _refuse_links(path: Path) -> None:
     if path.is_symlink():
         raise OutputError("is a symbolic link, not a file", path=path, remedy="name another file")
     for folder in path.parents:
-        of_the_system = folder.is_absolute() and folder.parent == Path(folder.anchor)
-        if folder.is_symlink() and not of_the_system:
+        is_system_link = folder.is_absolute() and folder.parent == Path(folder.anchor)
+        if folder.is_symlink() and not is_system_link:
             raise OutputError(
                 f"lies behind the symbolic link {folder}",
                 path=path,
@@ -194,13 +194,13 @@ def _refuse_foreign(path: Path, beginning: Beginning) -> None:
     with path.open("rb") as file:
         if isinstance(beginning, re.Pattern):
             found = file.read(_WHOLE)
-            ours = beginning.match(found) is not None
+            is_replaceable = beginning.match(found) is not None
         else:
             found = file.read(_LONGEST)
-            ours = found.startswith(beginning)
-    if found and not ours:
+            is_replaceable = found.startswith(beginning)
+    if found and not is_replaceable:
         raise OutputError(
-            "exists already and is not such a file of nrs-design, so it is not overwritten",
+            "exists and has another origin than nrs-design: not overwritten",
             path=path,
             remedy="name another file, or remove it",
         )

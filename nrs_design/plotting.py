@@ -12,10 +12,10 @@ import contextlib
 from importlib.util import find_spec
 from pathlib import Path
 
-_found = find_spec("matplotlib")
-assert _found is not None
-assert _found.origin is not None
-with contextlib.chdir(Path(_found.origin).with_name("mpl-data")):
+_matplotlib = find_spec("matplotlib")
+assert _matplotlib is not None
+assert _matplotlib.origin is not None
+with contextlib.chdir(Path(_matplotlib.origin).with_name("mpl-data")):
     from matplotlib import get_data_path as get_data_path
     from matplotlib import style as style
     from matplotlib.collections import QuadMesh as QuadMesh

@@ -7,14 +7,14 @@ import re
 from typing import Any
 
 # Letters and marks that are drawn as nothing; all other invisible characters are not printable.
-_UNSEEN = (
+_INVISIBLE = (
     "\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef"
 )
-# Beginning, or part, of a line that a GitHub log takes for a command.
+# Start or part of a line that GitHub logs interpret as a command.
 _COMMAND = re.compile(r"\A\s*:(?=:)|#(?=#\[)")
 # First surrogate for a byte that is no text (PEP 383).
 _FIRST_BYTE = 0xDC80
-_STRANGE = re.compile(f"[{_UNSEEN}]")
+_STRANGE = re.compile(f"[{_INVISIBLE}]")
 
 
 def printable(text: object) -> str:
@@ -24,7 +24,7 @@ def printable(text: object) -> str:
     invisible characters and lone surrogates are written as Python does in a string (``\x1b``);
     what a build server takes for a command is broken up. All else stays as it is.
     """
-    return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), _shown(str(text)))
+    return _COMMAND.sub(lambda found: found[0][:-1] + _hex(found[0][-1]), _escape(str(text)))
 
 
 def visible(text: str) -> str:
@@ -32,7 +32,7 @@ def visible(text: str) -> str:
 
     What has no shape of its own appears as an escape, such as ``\u202e``.
     """
-    return _shown(" ".join(text.splitlines()) if "\n" in text or "\r" in text else text)
+    return _escape(" ".join(text.splitlines()) if "\n" in text or "\r" in text else text)
 
 
 def escaped(character: str) -> str:
@@ -45,7 +45,7 @@ def escaped(character: str) -> str:
     return character.encode("unicode_escape").decode()
 
 
-def _shown(text: str) -> str:
+def _escape(text: str) -> str:
     if not text.isprintable():
         text = "".join(c if c.isprintable() else escaped(c) for c in text)
     if not text.isascii():

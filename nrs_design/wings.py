@@ -33,7 +33,7 @@ def wing_of(command: str) -> str | None:
 
 
 def is_installed(wing: str) -> bool:
-    """Return whether the folder of a wing is there; nothing of it is loaded."""
+    """Return whether the package contains the folder of a wing; import nothing."""
     return find_spec(f"nrs_design.{wing}") is not None
 
 

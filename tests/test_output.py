@@ -15,9 +15,9 @@ from nrs_design.output import (
     RESPONSE,
     SCHEMA,
     SVG,
-    alone_in,
     check_html,
     check_place,
+    lock_folder,
     write_output,
     write_outputs,
 )
@@ -203,7 +203,7 @@ def test_two_who_change_one_file_take_turns(tmp_path):
 
     def add() -> None:
         for _ in range(20):
-            with alone_in(file.parent):
+            with lock_folder(file.parent):
                 count = int(file.read_text()) if file.exists() else 0
                 write_output(file, str(count + 1))
 

@@ -164,7 +164,7 @@ def _validated(document: Document, name: str) -> LoadedSpec:
         found = file_faults(error, SwitchedSystemSpec, parse_document(text))
         # Lines of a file that nobody has seen would mislead.
         faults = tuple(replace(fault, line=None, column=None) for fault in found)
-        raise SpecError.of(faults, None) from None
+        raise SpecError.combine(faults, None) from None
     return LoadedSpec(
         path=Path(f"{name}.nrs.yaml"), sha256=hash_meaning(document), text=text, spec=spec
     )

@@ -196,7 +196,7 @@ def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutco
     message = f"{error.location}: {error.message}" if elsewhere else error.message
     if error.remedy:
         message += f" ({error.remedy})"
-    message = _one_line(message + error.more)
+    message = _one_line(message + error.count_text)
     status = Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR
     place = (None, None) if elsewhere else (error.line, error.column)
     found = Obligation(RULES[error.rule], path, "spec", status, message, *place)

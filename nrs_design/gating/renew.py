@@ -22,7 +22,7 @@ from nrs_design.gating.lock import (
     relative_to_lock,
 )
 from nrs_design.gating.obligations import Caution, GateOutcome, SpecOutcome, Status
-from nrs_design.output import LOCK, alone_in, write_output
+from nrs_design.output import LOCK, lock_folder, write_output
 from nrs_design.pipeline.runs import Recorded
 from nrs_design.spec.load import is_there
 
@@ -46,7 +46,7 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
     for spec in outcome.specs:
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
-    with alone_in(file.parent):
+    with lock_folder(file.parent):
         for spec in outcome.specs:
             _check_kept(spec)
         fresh = make_lock(outcome.specs, file).specs

@@ -119,7 +119,7 @@ def _examine_safely(
                 f"{namesake} is named {name!r} too, and their files would overwrite each other"
             )
             fault = Fault(message, place.line, place.column, remedy)
-            raise SpecError.of((fault,), loaded.path)
+            raise SpecError.combine((fault,), loaded.path)
         with axis_context(getattr(loaded.spec, "axis", None)):
             return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides)
     except Exception as error:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import ClassVar
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.models.linear_form import ONE, LinearForm, combine, coordinates, zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ class Realization:
     def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
         """Return xp' under the command u; the load, a torque, does not act on this loop."""
         rows = [[*row, *zero(len(command) - self.order)] for row in self.A]
-        return [*rows[:-1], combine((Fraction(1), rows[-1]), (Fraction(1), command))]
+        return [*rows[:-1], combine((ONE, rows[-1]), (ONE, command))]
 
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
         """Return y'; `nothing` is the form zero, `command` returns u."""
@@ -76,8 +77,8 @@ class Realization:
             )
         share = -self.A[-1][0] / first
         row = [-a - share * c for a, c in zip(self.A[-1][1:], tail, strict=True)]
-        form = [*row, Fraction(1), *zero(len(output) - self.order)]
-        return combine((Fraction(1), form), (share, output))
+        form = [*row, ONE, *zero(len(output) - self.order)]
+        return combine((ONE, form), (share, output))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +91,9 @@ class JointMotionLoop:
     affine in Km, 1/tau and 1/J, each for itself.
     """
 
+    order: ClassVar[int] = 2  # Number of states
+    states: ClassVar[tuple[str, ...]] = ("e [rad]", "omega [rad/s]")
+
     # Kp, Kd: PD gains in rpm/rad and rpm s/rad.
     Kp: Fraction
     Kd: Fraction
@@ -98,16 +102,6 @@ class JointMotionLoop:
     # Inertia at the joint in kg m^2 that the environment works against; None leaves its torque out.
     J: Fraction | None
 
-    @property
-    def order(self) -> int:
-        """Number of states."""
-        return len(self.states)
-
-    @property
-    def states(self) -> tuple[str, ...]:
-        """Names and units of the states."""
-        return "e [rad]", "omega [rad/s]"
-
     def output(self, size: int) -> LinearForm:
         """Return omega as a linear form of a state of that size."""
         return coordinates(size)[1]
@@ -115,11 +109,11 @@ class JointMotionLoop:
     def rates(self, command: LinearForm, load: LinearForm | None = None) -> list[LinearForm]:
         """Return e' and omega' under the commanded velocity u and the torque of the environment."""
         error, omega = coordinates(len(command))[:2]
-        slip = combine((Fraction(1), command), (Fraction(-1), omega))
+        slip = combine((ONE, command), (-ONE, omega))
         drive = self.Km / self.tau
         turn = combine((drive * self.Kp, error), (drive * self.Kd, slip), (-1 / self.tau, omega))
         if load is not None and self.J is not None:
-            turn = combine((Fraction(1), turn), (-1 / self.J, load))
+            turn = combine((ONE, turn), (-1 / self.J, load))
         return [slip, turn]
 
     @property
@@ -129,7 +123,7 @@ class JointMotionLoop:
 
     def integral(self, output: LinearForm) -> LinearForm:
         """Return the integral of the command u: the error plus `output`, the integral of omega."""
-        return combine((Fraction(1), coordinates(len(output))[0]), (Fraction(1), output))
+        return combine((ONE, coordinates(len(output))[0]), (ONE, output))
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,41 +134,30 @@ class LoadedMotionLoop:
     commanded position u jumps: ``tau w' = Km Kp (u - theta) - (1 + Km Kd) theta' - tau F/J``.
     """
 
+    order: ClassVar[int] = 2  # Number of states
+    states: ClassVar[tuple[str, ...]] = ("theta [rad]", "w [rad/s]")
+
     joint: JointMotionLoop
-
-    @property
-    def order(self) -> int:
-        """Number of states."""
-        return len(self.states)
-
-    @property
-    def states(self) -> tuple[str, ...]:
-        """Names and units of the states."""
-        return "theta [rad]", "w [rad/s]"
 
     def output(self, size: int) -> LinearForm:
         """Return theta as a linear form of a state of that size."""
         return coordinates(size)[0]
 
-    @property
-    def _direct(self) -> Fraction:
-        """Velocity over command at once, in 1/s."""
-        return self.joint.Km * self.joint.Kd / self.joint.tau
-
     def velocity(self, nothing: LinearForm, command: Callable[[], LinearForm]) -> LinearForm:
         """Return theta'; `nothing` is the form zero, `command` returns u."""
-        return combine((Fraction(1), coordinates(len(nothing))[1]), (self._direct, command()))
+        feedthrough = self.joint.Km * self.joint.Kd / self.joint.tau
+        return combine((ONE, coordinates(len(nothing))[1]), (feedthrough, command()))
 
     def rates(self, command: LinearForm, load: LinearForm) -> list[LinearForm]:
         """Return theta' and w' under the commanded position and the torque of the environment."""
         joint, velocity = self.joint, self.velocity(command, lambda: command)
-        error = combine((Fraction(1), command), (Fraction(-1), self.output(len(command))))
+        error = combine((ONE, command), (-ONE, self.output(len(command))))
         turn = combine(
             (joint.Km * joint.Kp / joint.tau, error),
             (-(1 + joint.Km * joint.Kd) / joint.tau, velocity),
         )
         if joint.J is not None:
-            turn = combine((Fraction(1), turn), (-1 / joint.J, load))
+            turn = combine((ONE, turn), (-1 / joint.J, load))
         return [velocity, turn]
 
 

@@ -209,7 +209,7 @@ def _rate(law: AdmittanceLaw, manager: RosNode | None, path: Path) -> Fraction:
         )
         faults = [law.node.fault("update_rate", message, "write a rate that divides it")]
     if faults:
-        raise SpecError.of(faults, path)
+        raise SpecError.combine(faults, path)
     return min(rate, law_rate) if law_rate else rate
 
 

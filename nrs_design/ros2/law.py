@@ -120,7 +120,7 @@ def read_law(node: RosNode, controllers: Collection[str] = ()) -> AdmittanceLaw:
     read = {name: read_parameter(node, name) for name in LAW}
     faults = [fault for _, wrong in read.values() for fault in wrong]
     if faults := [*faults, *_too_few_joints(node)]:
-        raise SpecError.of(faults, None)
+        raise SpecError.combine(faults, None)
     values = {name: numbers for name, (numbers, _) in read.items()}
     keys = ("selected_axes", "mass", "damping_ratio", "stiffness")
     rows = zip(AXES, *(values[f"admittance.{key}"] for key in keys), strict=True)

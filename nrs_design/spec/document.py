@@ -138,7 +138,7 @@ def parse_document(text: str, path: Path | None = None) -> Node:
     """
     root, faults = parse_with_faults(text, path)
     if faults:
-        raise SpecError.of(faults, path)
+        raise SpecError.combine(faults, path)
     return root
 
 
@@ -226,12 +226,12 @@ class _Builder:
         """Note a fault behind which the file can be read on."""
         self.faults.append(Fault(message, place.line, place.column, remedy))
         if len(self.faults) >= MAX_FAULTS:
-            raise SpecError.of(self.faults, self._path)
+            raise SpecError.combine(self.faults, self._path)
 
     def _fail(self, message: str, place: Position, remedy: str) -> NoReturn:
         """Give up; an indentation that does not fit, for instance, leaves the rest unreadable."""
         self._note(message, place, remedy)
-        raise SpecError.of(self.faults, self._path)
+        raise SpecError.combine(self.faults, self._path)
 
     def _raw_events(self) -> Iterator[events.Event]:
         """Parser events; every way in which the parser gives up becomes a SpecError."""

@@ -192,7 +192,7 @@ def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | N
     """Join the faults; what cannot be read as YAML is wrong in itself, and reported once."""
     known = {(fault.line, fault.column) for fault in syntax}
     others = (fault for fault in found if (fault.line, fault.column) not in known)
-    return SpecError.of((*syntax, *others), path)
+    return SpecError.combine((*syntax, *others), path)
 
 
 def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:

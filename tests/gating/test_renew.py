@@ -9,7 +9,7 @@ from nrs_design.gating.find_specs import find_specs
 from nrs_design.gating.lock import LockedRemark, dump_lock, read_lock
 from nrs_design.gating.obligations import Caution
 from nrs_design.gating.renew import check_folder, make_lock, recorded_in, write_lock
-from nrs_design.output import alone_in
+from nrs_design.output import lock_folder
 
 from .conftest import gate_of
 
@@ -52,7 +52,7 @@ def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
     lock.unlink()
     names = ("specs/stable.nrs.yaml", "specs/soft-tissue.nrs.yaml")
     one, other = (outcome_of(project, name) for name in names)
-    with alone_in(project):
+    with lock_folder(project):
         waiting = threading.Thread(target=write_lock, args=(one, lock))
         waiting.start()
         waiting.join(0.1)

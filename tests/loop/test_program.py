@@ -167,7 +167,10 @@ def alter(monkeypatch):
         list_law.cache_clear()
 
         def altered(found):
-            return tuple(replace(part, after=tuple(change([*part.after]))) for part in found)
+            return tuple(
+                replace(part, state_operations=tuple(change([*part.state_operations])))
+                for part in found
+            )
 
     yield put
     monkeypatch.undo()

@@ -110,7 +110,7 @@ def run_with(**changes):
         (scenario_with(errors=Errors(force_noise=0.1)), ["noise"]),
         (scenario_with(errors=Errors(jitter=0.1)), ["late"]),
         (scenario_with(errors=Errors(force_step=1)), ["force error"]),
-        (scenario_with(errors=Errors(friction=1.0)), ["the friction is larger", "change its sign"]),
+        (scenario_with(errors=Errors(friction=1.0)), ["the friction exceeds", "change its sign"]),
         # No proof knows saturation, nor samples that the law refuses.
         (run_with(saturated=1), ["met its limit"]),
         (run_with(refused=1), ["refused samples"]),

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names
@@ -66,12 +65,13 @@ class Sector:
 
 def sector_of(spec: InteractionDesignSpec) -> Sector | str:
     """Return the conditions on readings of a run, or the reason for none."""
-    if spec.monitoring is None:
+    monitoring = spec.monitoring
+    if monitoring is None:
         return "the spec has no `monitoring`, so nothing says how far readings are off"
     if spec.contact is None:
         return "the spec does not say by `contact` whether contact may be lost"
     youngest, oldest = (0, 0) if spec.sampling is None else spec.sampling.delay
-    if spec.monitoring.surface != "fixed" and oldest - youngest > 1:
+    if monitoring.surface != "fixed" and oldest - youngest > 1:
         return "ages of the force sample differ by more than one, so the order of contacts is lost"
     names = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
     environments = [e for e in build_environments(spec) if e.name in names]
@@ -81,34 +81,22 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
         if e.law.has_memory or e.law.has_mass or e.preloaded:
             return f"the torque of {e.name} does not follow from angle and speed of the moment"
     damping = max(e.load[1].high for e in environments)
-    speed = spec.monitoring.speed
-    if damping and speed is None:
+    if damping and monitoring.speed is None:
         return "a tissue has damping, and no `monitoring: speed` bounds what that adds"
-    return _sector(
-        spec, environments, damping * (Fraction(0) if speed is None else speed.not_below)
-    )
-
-
-def _sector(
-    spec: InteractionDesignSpec, environments: list[Environment], viscous: Fraction
-) -> Sector:
-    """Return the sector of touched environments, with the torque of damping in N m."""
-    monitoring = spec.monitoring
-    assert monitoring is not None
-    speed, skew, surface = map(
+    speed, skew, drift = map(
         _not_below, (monitoring.speed, monitoring.skew, monitoring.surface_speed)
     )
     # The surface moves on while the sample of the torque grows old.
-    oldest = Fraction(0) if spec.sampling is None else spec.sampling.oldest
+    age = Fraction(0) if spec.sampling is None else spec.sampling.oldest
     reading = monitoring.angle_noise.not_below
     return Sector(
         low=min(e.stiffness.low for e in environments),
         high=max(e.stiffness.high for e in environments),
-        torque_noise=monitoring.torque_noise.not_below + viscous,
-        angle_noise=reading + speed * skew + surface * (oldest + skew),
+        torque_noise=monitoring.torque_noise.not_below + damping * speed,
+        angle_noise=reading + speed * skew + drift * (age + skew),
         reading=reading,
         surface=monitoring.surface,
-        surface_speed=surface,
+        surface_speed=drift,
         contact_maintained=spec.contact == "kept",
         speed=None if monitoring.speed is None else speed,
     )

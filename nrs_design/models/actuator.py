@@ -29,12 +29,6 @@ class ActuatorRanges:
     time_constant: Interval  # In s
     command: str  # That unit
 
-    @classmethod
-    def point(cls, actuator: Actuator) -> ActuatorRanges:
-        """Return the ranges of an actuator that is known."""
-        gain, time_constant = Interval.point(actuator.gain), Interval.point(actuator.time_constant)
-        return cls(gain, time_constant, actuator.command)
-
     @property
     def nominal(self) -> Actuator:
         """The actuator that the design uses."""

@@ -16,7 +16,6 @@ from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 class Plant:
     """Actuator and environments of one axis."""
 
-    actuator: Actuator  # Identified model
     # In the order of the spec; several that are touched at once come last.
     environments: tuple[Environment, ...]
     actuator_ranges: ActuatorRanges  # Where the actuator may be
@@ -25,6 +24,11 @@ class Plant:
     load_inertia: Fraction | None = None
     # Drive of the joint, if not a first-order motor with velocity commands.
     drive: Drive | None = None
+
+    @property
+    def actuator(self) -> Actuator:
+        """The nominal actuator, which the design uses."""
+        return self.actuator_ranges.nominal
 
     @property
     def slowed(self) -> bool:

@@ -82,7 +82,7 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
         stated = None if spec.motion_loop is None else spec.motion_loop.transfer_function
         if stated is not None:
             loop = MotionLoop(stated.numerator, stated.denominator, is_stated=True)
-    return Plant(ranges.nominal, tuple(build_environments(spec)), ranges, loop, load, drive)
+    return Plant(tuple(build_environments(spec)), ranges, loop, load, drive)
 
 
 def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, MotionLoop]:

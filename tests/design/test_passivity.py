@@ -17,6 +17,7 @@ from nrs_design.design.passivity import passive_band as band_of
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.loop.parameter_box import Joint
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.thesis import thesis
 from tests.design.motion_loops import LAG, PD, PLACE, interval
@@ -113,7 +114,8 @@ NOMINAL = {name: Fraction(value) for name, value in NUMBERS.items()}
 
 
 def loaded(J, low_pass=None):
-    point = ActuatorRanges.point(PLACE.motor)
+    gain, lag = Interval.point(PLACE.motor.gain), Interval.point(PLACE.motor.time_constant)
+    point = ActuatorRanges(gain, lag, PLACE.motor.command)
     joint = Joint(PD, point, None if J is None else Fraction(J))
     motion = PLACE.motor.gain * PD.Kd, PLACE.motor.gain * PD.Kp
     loop = MotionLoop(motion, (PLACE.motor.time_constant, 1 + motion[0], motion[1]))

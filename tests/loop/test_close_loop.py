@@ -16,7 +16,7 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.errors import AssemblyError
 from nrs_design.loop.close_loop import close_loop
 from nrs_design.loop.modes import velocity_mode
-from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.interval import Interval
@@ -27,13 +27,13 @@ from tests.loop.support import LOOP, MOTION, loaded, objects, polynomial, positi
 from tests.support import SOFT_TISSUE, words_of
 
 F = Fraction
-MOTOR = Actuator(F(1), F(1))
+MOTOR = ActuatorRanges(Interval.point(F(1)), Interval.point(F(1)), "rpm")
 CONDITIONS = build_conditions(loaded(SOFT_TISSUE).spec)
 
 
 def closed(environments, *controllers, contact=None):
     """Close the motion loop of the thesis around some environments."""
-    plant = Plant(MOTOR, tuple(environments), ActuatorRanges.point(MOTOR), LOOP)
+    plant = Plant(tuple(environments), MOTOR, LOOP)
     design = ControllerDesign(laws.ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop(replace(CONDITIONS, contact=contact), plant, design)[0]
 

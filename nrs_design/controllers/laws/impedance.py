@@ -99,11 +99,25 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         Beside controllers that are given a position, the reference is counted from that position;
         while one of those is active, it and the velocity of the admittances decay.
         """
-        return (
-            _admittance(
-                sprung="Kt" in number_names, inert="a" in number_names, has_position=has_position
-            ),
+        sprung, inert = "Kt" in number_names, "a" in number_names
+        place, successor = _REFERENCE, "next_reference"
+        if has_position:
+            place, successor = _OFFSET, "next_offset"
+        commanded = sprung and not has_position
+        following = {place.name: successor} | ({"velocity": "next_velocity"} if inert else {})
+        part = StepPart(
+            "admittance",
+            tuple(_gains(sprung=sprung, inert=inert, has_position=has_position)),
+            (HAND,),
+            place,
+            (*([_VELOCITY] if inert else []), *([_COMMANDED] if commanded else [])),
+            (Operation("taken", "multiply", "takes_offset", "offset"),) if has_position else (),
+            "taken" if has_position else "",
+            "off" if has_position else "",
+            tuple(_moving(sprung=sprung, inert=inert, has_position=has_position)),
+            following | ({"commanded": "next_commanded"} if commanded else {}),
         )
+        return (part,)
 
 
 LAW = Admittance
@@ -138,24 +152,6 @@ _COMMANDED = Value(
     "none",
     True,
 )
-
-
-def _admittance(*, sprung: bool, inert: bool, has_position: bool) -> StepPart:
-    place, successor = (_OFFSET, "next_offset") if has_position else (_REFERENCE, "next_reference")
-    commanded = sprung and not has_position
-    following = {place.name: successor} | ({"velocity": "next_velocity"} if inert else {})
-    return StepPart(
-        "admittance",
-        tuple(_gains(sprung=sprung, inert=inert, has_position=has_position)),
-        (HAND,),
-        place,
-        (*([_VELOCITY] if inert else []), *([_COMMANDED] if commanded else [])),
-        (Operation("taken", "multiply", "takes_offset", "offset"),) if has_position else (),
-        "taken" if has_position else "",
-        "off" if has_position else "",
-        tuple(_moving(sprung=sprung, inert=inert, has_position=has_position)),
-        following | ({"commanded": "next_commanded"} if commanded else {}),
-    )
 
 
 def _gains(*, sprung: bool, inert: bool, has_position: bool) -> Iterator[StepGain]:

@@ -114,11 +114,13 @@ def units_of(
 
     `command` is the unit of the commands that the motor takes, which the motion gains make.
     """
-    units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
-    motion, pd = ProportionalDerivative.command_units(command), ProportionalDerivative.name
+    pd, units = (
+        ProportionalDerivative,
+        {g: u for law in LAWS.values() for g, u in law.units.items()},
+    )
+    motion = {gain: unit.replace("rpm", command) for gain, unit in pd.units.items()}
+    tables = {name: motion if name == pd.name else units for name in gains}
     return {
-        name: {
-            gain: axis.unit((motion if name == pd else units).get(gain, "")) for gain in gain_names
-        }
-        for name, gain_names in gains.items()
+        name: {gain: axis.unit(table.get(gain, "")) for gain in gains[name]}
+        for name, table in tables.items()
     }

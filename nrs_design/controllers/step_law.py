@@ -119,7 +119,8 @@ def numbers_in_force(
 
 def _has(law: DiscreteLaw, part: StepPart) -> bool:
     """Tell whether a law has a part."""
-    return part.name in {part.name for part in law.law.parts(law.numbers, has_position=False)}
+    names = {law_part.name for law_part in law.law.parts(law.numbers, has_position=False)}
+    return part.name in names
 
 
 def build_law(
@@ -157,9 +158,14 @@ def build_law(
     referred = tuple(_referred(parts, takes_position=takes_position))
     reference_name = "reference" if not takes_position or referred else "position"
     takes_force = any(gain.name == FORCE_GAIN for part in parts for gain in part.gains)
-    motion = (
-        () if frame.streams else motion_operations(limits, reference_name, takes_force=takes_force)
-    )
+    motion: tuple[Operation, ...] = ()
+    if frame.interface is CommandInterface.VELOCITY:
+        command = "relative"
+    elif frame.streams:
+        command = reference_name if takes_position else "next_reference"
+    else:
+        motion = (*motion_operations(limits, reference_name, takes_force=takes_force),)
+        command = motion[-1].name
     operations = (
         *_filtered(frame.order),
         *referred,
@@ -190,27 +196,10 @@ def build_law(
             replace(o, first=force.get(o.first, o.first), second=force.get(o.second, o.second))
             for o in operations
         ),
-        {
-            "command": _command(
-                frame, reference_name if takes_position else "", takes_force=takes_force
-            )
-        },
+        {"command": command},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
-
-
-def _command(frame: StepFrame, position_name: str, *, takes_force: bool) -> str:
-    """Return the name of the output; `placed`: the position input of laws, or empty."""
-    if frame.streams:
-        return (
-            "relative"
-            if frame.interface is CommandInterface.VELOCITY
-            else position_name or "next_reference"
-        )
-    if frame.limits.command is not None:
-        return "limited_command"
-    return "eased" if takes_force else "command"
 
 
 def _streamed(part: StepPart) -> StepPart:

@@ -12,6 +12,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
+from nrs_design.models.axis import AxisType
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import ONE, ZERO
 from nrs_design.models.motion_loop import MotionLoop
@@ -40,21 +41,14 @@ COMMANDS: Mapping[CommandInterface, str] = {
     CommandInterface.POSITION: "rad",
     CommandInterface.TORQUE: "N*m",
 }
-SLIDING: Mapping[CommandInterface, str] = {
-    CommandInterface.VELOCITY: "m/s",
-    CommandInterface.POSITION: "m",
-    CommandInterface.TORQUE: "N",
-}
 
 
 def find_interface(command: str) -> CommandInterface | None:
     """Return the command interface with a unit; None for commands of a motor."""
-    interfaces = (
-        (interface, unit)
-        for commands in (COMMANDS, SLIDING)
-        for interface, unit in commands.items()
+    pairs = (
+        (axis.unit(unit), interface) for interface, unit in COMMANDS.items() for axis in AxisType
     )
-    return next((interface for interface, unit in interfaces if unit == command), None)
+    return dict(pairs).get(command)
 
 
 @dataclass(frozen=True, slots=True)

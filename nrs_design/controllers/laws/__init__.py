@@ -19,15 +19,9 @@ from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.controllers.laws.position import PositionControl
 from nrs_design.spec.controllers import CONTROLLER_TYPES
 
-
-def _law_of(controller: str) -> type[CompliantLaw]:
-    law: type[CompliantLaw] = import_module(f"{__name__}.{controller.replace('-', '_')}").LAW
-    return law
-
-
 # Laws that the robot switches between, by the type of a controller in a spec.
 LAWS: Mapping[str, type[CompliantLaw]] = {
-    controller: _law_of(controller) for controller in CONTROLLER_TYPES
+    name: import_module(f"{__name__}.{name.replace('-', '_')}").LAW for name in CONTROLLER_TYPES
 }
 
 __all__ = [

@@ -31,11 +31,6 @@ class ProportionalDerivative(AbstractLaw):
         """Whether the robot closes the motion loop, and takes velocities."""
         return self.Kp == self.Kd == 0
 
-    @staticmethod
-    def command_units(command: str) -> Mapping[str, str]:
-        """Return the units of the gains where commands are in that unit."""
-        return {"Kp": f"{command}/rad", "Kd": f"{command}*s/rad"}
-
     @property
     def zero(self) -> Fraction:
         """The z of ``Kd (s + z)``, in 1/s."""

@@ -9,7 +9,7 @@ import numpy as np
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices
-from nrs_design.simulation.switched import all_modes
+from nrs_design.simulation.switched import all_modes, mode_matrices
 
 
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
@@ -19,7 +19,7 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
     """
     saturation = system.saturation
     assert saturation is not None
-    A = np.array([mode.A.floats() for mode in all_modes(system).modes])
+    A = np.array(mode_matrices(all_modes(system)))
     columns = [np.array([c.floats() for c in s.columns])[:, :, 0] for s in saturation.signals]
     rows = [np.array([q.floats() for q in s.rows])[:, 0] for s in saturation.signals]
 

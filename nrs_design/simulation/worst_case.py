@@ -27,7 +27,13 @@ from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Indices, deflected
 from nrs_design.simulation.rules import Rules, fitting_step
-from nrs_design.simulation.switched import all_modes, expm, fine_step, mode_eigenvalues
+from nrs_design.simulation.switched import (
+    all_modes,
+    expm,
+    fine_step,
+    mode_eigenvalues,
+    mode_matrices,
+)
 
 # The adversary improves the last _HORIZON steps of the _CANDIDATES runs that come farthest while a
 # choice is held, for at most _LONGEST_HOLD steps, in at most _SWEEPS sweeps.
@@ -164,7 +170,7 @@ class _Game:
     def create(cls, system: SwitchedSystem, step: float) -> _Game:
         """Lay a system of modes of one size on a grid of time, in floating point."""
         step = fitting_step(system, step)
-        parts = [np.array([mode.A.floats() for mode in all_modes(system).modes])]
+        parts = [np.array(mode_matrices(all_modes(system)))]
         for channel in system.channels:
             columns = np.array([column.floats() for column in channel.columns])
             parts.append(columns * float(channel.bound))

@@ -31,12 +31,12 @@ def brief(evidence: AbstractEvidence, system: SwitchedSystem, arm: Fraction | No
             return "no common quadratic function exists"
         case Shows.REGION:
             assert system.saturation is not None
-            start, size, of = system.saturation.start, evidence.start_size, ""
+            start, size, start_clause = system.saturation.start, evidence.start_size, ""
             if size is not None:
-                most = f"{lower(size, DIGITS)} {start.unit}".rstrip()
-                of = f" with a {start.name} up to {most}{start.exception}"
+                largest_start = f"{lower(size, DIGITS)} {start.unit}".rstrip()
+                start_clause = f" with a {start.name} up to {largest_start}{start.exception}"
             scope = _contact(evidence, system) + _unrounded(evidence, system)
-            return f"although signals saturate, decays from rest{of}{scope}"
+            return f"although signals saturate, decays from rest{start_clause}{scope}"
         case _:
             # The growing signal stands before a colon, or before the second sentence.
             claim = evidence.claim_in_scope(system)
@@ -53,9 +53,9 @@ def _decay(rate: Fraction | None, system: SwitchedSystem) -> str:
     # -log(rho) >= 1 - rho
     step = system.sample_time
     alpha = rate if step is None else (1 - rate) / step
-    within = f"time constant at most {_seconds(1 / alpha)}"
+    time_constant = f"time constant at most {_seconds(1 / alpha)}"
     rho = "" if step is None else f", rho {at_most(rate)} per step"
-    return f"decays with alpha {at_least(alpha, '1/s')} ({within}{rho})"
+    return f"decays with alpha {at_least(alpha, '1/s')} ({time_constant}{rho})"
 
 
 def _seconds(time: Fraction) -> str:
@@ -72,9 +72,9 @@ def _scope(evidence: AbstractEvidence, system: SwitchedSystem) -> str:
         signals = f"any switching among {counted(len(system.modes), 'mode')}"
     if system.clock is not None:
         signals += _rule(system.clock)
-    rounded = ", rounding included" if system.roundings and evidence.covers_rounding else ""
-    beside = rounded or _unrounded(evidence, system)
-    return f" under {signals}{_contact(evidence, system)}{beside}"
+    rounding_clause = ", rounding included" if system.roundings and evidence.covers_rounding else ""
+    exclusion = rounding_clause or _unrounded(evidence, system)
+    return f" under {signals}{_contact(evidence, system)}{exclusion}"
 
 
 def _rule(clock: Clock) -> str:
@@ -117,8 +117,8 @@ def _bound(bound: Bound, arm: Fraction | None) -> str:
     if arm is not None and unit == "N*m":
         notes.append(f"{upper(bound.level / arm, DIGITS)} N at {float(arm):g} m")
     if limit is not None:
-        kept = "within" if bound.level <= limit else "not shown to keep"
-        notes.append(f"{kept} its limit of {lower(limit, DIGITS)} {unit}")
+        limit_note = "within" if bound.level <= limit else "not shown to keep"
+        notes.append(f"{limit_note} its limit of {lower(limit, DIGITS)} {unit}")
     level = f"{upper(bound.level, DIGITS)} {unit}".rstrip()
-    beside = f" ({'; '.join(notes)})" if notes else ""
-    return f"|{bound.output.name}| <= {level}{beside} from rest while {', '.join(sizes)}"
+    notes_clause = f" ({'; '.join(notes)})" if notes else ""
+    return f"|{bound.output.name}| <= {level}{notes_clause} from rest while {', '.join(sizes)}"

@@ -103,10 +103,10 @@ class Certificate(AbstractChecked):
 
 def verdict_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> Verdict:
     """Return the verdict that checked statements about a system carry."""
-    shown = {statement.shown(system) for statement in statements}
-    if Shows.STABILITY in shown:
+    conclusions = {statement.shown(system) for statement in statements}
+    if Shows.STABILITY in conclusions:
         return Verdict.PROVED
-    return Verdict.REFUTED if Shows.INSTABILITY in shown else Verdict.INCONCLUSIVE
+    return Verdict.REFUTED if Shows.INSTABILITY in conclusions else Verdict.INCONCLUSIVE
 
 
 def deciding(
@@ -148,8 +148,8 @@ def granted(
     contact = system.contact
     if contact is None or contact.loss is None:
         return system.assumptions
-    about = [s for s in statements if s.shows in (Shows.STABILITY, Shows.INSTABILITY)]
-    if about and not any(item.covers_loss(system) for item in about):
+    decisive = [s for s in statements if s.shows in (Shows.STABILITY, Shows.INSTABILITY)]
+    if decisive and not any(item.covers_loss(system) for item in decisive):
         return system.assumptions
     return (*system.assumptions, contact.loss)
 
@@ -171,10 +171,10 @@ def common_quadratic_of(
 
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
-    own = system_fields(certificate.system)
+    fields = system_fields(certificate.system)
     if not is_of_growth(certificate):
         # Which modes are attained matters only where something grows.
-        own.pop("enclosures", None)
+        fields.pop("enclosures", None)
     return {
         "schema": SCHEMA,
         "verdict": certificate.verdict,
@@ -183,7 +183,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         "gains": {name: dict(values) for name, values in certificate.gains.items()},
         **({} if not certificate.points else {"points": certificate.points}),
         **({} if certificate.ages is None else {"ages": [*certificate.ages]}),
-        **own,
+        **fields,
         "statements": [{"kind": item.kind, **item.to_fields()} for item in certificate.statements],
         "package": {"name": "nrs-design", "version": certificate.version},
     }

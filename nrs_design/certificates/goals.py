@@ -73,20 +73,20 @@ def _goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoa
         yield CertifiedGoal("initial_force", text, *_initial_force(required, certificate))
 
 
-def _peak_torque(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
+def _peak_torque(required: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
     found = None
     if certificate is not None:
         found = bound_on(certificate.system, certificate.statements, "force")
     if certificate is None or found is None:
         return "no bound on the force was proved", False
     acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
-    said = (
+    statement = (
         f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
         f"{rounded_up(found.level, _effort(certificate))}, from rest"
     )
     if certificate.system.contact is None:
-        said += ", while contact is kept"
-    return said, found.level <= wanted.exact
+        statement += ", while contact is kept"
+    return statement, found.level <= required.exact
 
 
 def _effort(certificate: Certificate) -> str:
@@ -94,14 +94,14 @@ def _effort(certificate: Certificate) -> str:
     return find_axis(certificate.system.states).unit("N*m")
 
 
-def _decay_rate(wanted: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
+def _decay_rate(required: Quantity, certificate: Certificate | None) -> tuple[str, bool]:
     rate = decay_rate(certificate)
     if certificate is None or rate is None:
         return "no decay rate in 1/s was proved", False
-    said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
+    statement = f"the proved decay rate is {rounded_down(rate, '1/s')}"
     if certificate.system.saturation is not None:
-        said += " while no signal saturates"
-    return said, rate >= wanted.exact
+        statement += " while no signal saturates"
+    return statement, rate >= required.exact
 
 
 def decay_rate(certificate: Certificate | None) -> Fraction | None:
@@ -123,13 +123,13 @@ def rate_per_second(rate: N | None, system: SwitchedSystem) -> N | None:
 
 
 def _delay(
-    sampling: SamplingSpec, wanted: Quantity, certificate: Certificate | None
+    sampling: SamplingSpec, required: Quantity, certificate: Certificate | None
 ) -> tuple[str, bool]:
     if certificate is None or certificate.verdict != Verdict.PROVED:
         return "nothing was proved", False
-    least, oldest = (n * sampling.outer for n in certificate.ages or sampling.delay)
-    ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
-    return f"the loop is proved for force samples {ages}", oldest >= wanted.exact
+    youngest, oldest = (n * sampling.outer for n in certificate.ages or sampling.delay)
+    ages = f"{rounded_up(youngest, 's')} to {rounded_down(oldest, 's')} old"
+    return f"the loop is proved for force samples {ages}", oldest >= required.exact
 
 
 def _initial_force(required: Fraction | None, certificate: Certificate | None) -> tuple[str, bool]:
@@ -137,8 +137,8 @@ def _initial_force(required: Fraction | None, certificate: Certificate | None) -
     level = next((size for s in statements if (size := s.start_size) is not None), None)
     if certificate is None or level is None:
         return "no force was proved from which motions decay although signals saturate", False
-    said = (
+    statement = (
         f"from rest with a contact force up to {rounded_down(level, _effort(certificate))} "
         "motions are proved to decay although signals saturate"
     )
-    return said, required is None or level >= required
+    return statement, required is None or level >= required

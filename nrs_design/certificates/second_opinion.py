@@ -46,8 +46,8 @@ def agrees(
     decide = _OPINIONS.get(evidence.kind)
     if decide is not None and (opinion := decide(system, evidence)) is not None:
         return opinion
-    made = (form for _, form in evidence.forms(system)) if forms is None else forms
-    return all(map(finds_positive, made))
+    checked_forms = (form for _, form in evidence.forms(system)) if forms is None else forms
+    return all(map(finds_positive, checked_forms))
 
 
 def _agrees_on_growth(system: SwitchedSystem, evidence: GrowingSequence) -> bool:

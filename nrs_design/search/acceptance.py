@@ -73,15 +73,16 @@ def first_accepted(
         except StopIteration as end:
             refused = f"a candidate was found, but {fault}" if fault else NO_RATE
             return None, end.value or refused
-        made: list[IntegerMatrix] = []
-        fault = candidate.evidence.find_fault(system, made)
+        checked_forms: list[IntegerMatrix] = []
+        fault = candidate.evidence.find_fault(system, checked_forms)
         # Evidence with enclosed stays has a number of pieces.
         encloses = getattr(getattr(candidate.evidence, "stays", None), "pieces", 1) > 1
-        each = PER_ENCLOSED_FORM if encloses else PER_FORM
+        work_per_form = PER_ENCLOSED_FORM if encloses else PER_FORM
         products = (
-            len(M) ** 3 * (PER_PRODUCT + PER_SQUARED_BITS * bit_length(M) ** 2) for M in made
+            len(M) ** 3 * (PER_PRODUCT + PER_SQUARED_BITS * bit_length(M) ** 2)
+            for M in checked_forms
         )
-        allowance.charge(PER_CANDIDATE + each * len(made) + sum(products))
+        allowance.charge(PER_CANDIDATE + work_per_form * len(checked_forms) + sum(products))
         if fault is None:
             return candidate.evidence, candidate.words
 

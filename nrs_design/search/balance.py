@@ -14,7 +14,7 @@ SWEEPS = 64
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
 # Lyapunov equations are solved to this in at most so many rounds.
-NOTHING_LEFT, DOUBLINGS, GROWN = 1e-10, 60, 1e50
+NOTHING_LEFT, DOUBLINGS, LARGEST_POWER = 1e-10, 60, 1e50
 
 
 def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -83,13 +83,13 @@ def own_norms(matrices: NDArray[np.float64], time: Time) -> NDArray[np.float64]:
     M, W = matrices, np.broadcast_to(np.eye(matrices.shape[-1]), matrices.shape)
     if time is Time.CONTINUOUS:
         size = np.sqrt((matrices**2).mean(axis=(1, 2)) * matrices.shape[-1])[:, None, None]
-        back = np.linalg.inv(size * W - matrices)
-        M, W = back @ (size * W + matrices), 2 * size * (np.swapaxes(back, 1, 2) @ back)
+        inverse = np.linalg.inv(size * W - matrices)
+        M, W = inverse @ (size * W + matrices), 2 * size * (np.swapaxes(inverse, 1, 2) @ inverse)
     for _ in range(DOUBLINGS):
         W = W + np.swapaxes(M, 1, 2) @ W @ M
         M = M @ M
         if (left := np.abs(M).max()) < NOTHING_LEFT:
             return np.asarray((W + np.swapaxes(W, 1, 2)) / 2)
-        if not left < GROWN:
+        if not left < LARGEST_POWER:
             break
     raise np.linalg.LinAlgError("a mode that is not stable has no norm")

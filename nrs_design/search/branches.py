@@ -60,7 +60,7 @@ def best_words(
     inner = np.linalg.inv(T)[graph.targets] @ graph.maps @ T[graph.sources]
     if not np.isfinite(inner).all():
         return
-    begins = np.searchsorted(graph.sources, np.arange(graph.count + 1))
+    first_edges = np.searchsorted(graph.sources, np.arange(graph.count + 1))
     words = np.arange(len(inner))[:, None]
     products, bounds, total = inner, np.full(len(inner), np.inf), 0
     for length in range(1, longest + 1):
@@ -80,24 +80,28 @@ def best_words(
                 yield tuple(int(k) for k in words[closed[best]]), floor
         norms = np.nan_to_num(np.linalg.norm(products, 2, axis=(1, 2)), posinf=0.0)
         bounds = np.minimum(bounds, norms ** (1 / length))
-        kept = np.flatnonzero(bounds > floor * (1 + BETTER))
-        after = begins[ends + 1] - begins[ends]
-        widest = max(int(after[kept].max(initial=1)), 1)
-        most = max(1, min(MAX_PRODUCTS, MAX_ENTRIES // size**2) // widest)
-        kept = kept[np.argsort(-bounds[kept], kind="stable")[:most]]
-        if not len(kept) or not after[kept].sum():
+        extendable = np.flatnonzero(bounds > floor * (1 + BETTER))
+        after = first_edges[ends + 1] - first_edges[ends]
+        widest = max(int(after[extendable].max(initial=1)), 1)
+        capacity = max(1, min(MAX_PRODUCTS, MAX_ENTRIES // size**2) // widest)
+        extendable = extendable[np.argsort(-bounds[extendable], kind="stable")[:capacity]]
+        if not len(extendable) or not after[extendable].sum():
             return
-        old = np.repeat(kept, after[kept])
-        within = np.arange(len(old)) - np.repeat(np.cumsum(after[kept]) - after[kept], after[kept])
-        edges = np.repeat(begins[ends[kept]], after[kept]) + within
+        old = np.repeat(extendable, after[extendable])
+        offsets = np.arange(len(old)) - np.repeat(
+            np.cumsum(after[extendable]) - after[extendable], after[extendable]
+        )
+        edges = np.repeat(first_edges[ends[extendable]], after[extendable]) + offsets
         words = np.hstack([words[old], edges[:, None]])
         products, bounds = inner[edges] @ products[old], bounds[old]
 
 
-def round_nodes(graph: StepGraph, rounded: Callable[[Array], Array] = round_coordinates) -> Array:
+def round_nodes(
+    graph: StepGraph, find_coordinates: Callable[[Array], Array] = round_coordinates
+) -> Array:
     """Return coordinates of every node in which the form of `mean_forms` is round."""
     forms = mean_forms(graph.maps, graph.sources, graph.targets, graph.count)
-    return np.array([rounded(P) for P in forms])
+    return np.array([find_coordinates(P) for P in forms])
 
 
 def mean_forms(maps: Array, sources: Indices, targets: Indices, count: int) -> Array:
@@ -114,19 +118,19 @@ def mean_forms(maps: Array, sources: Indices, targets: Indices, count: int) -> A
         np.add.at(found, sources, np.swapaxes(maps, 1, 2) @ forms[targets] @ maps)
         return np.asarray(found / leaving[:, None, None])
 
-    grown, logs = np.array(unit), list[float]()
+    growth_forms, logs = np.array(unit), list[float]()
     for _ in range(SWEEPS):
-        grown = mean(grown)
-        size = float(np.trace(grown, axis1=1, axis2=2).max())
+        growth_forms = mean(growth_forms)
+        size = float(np.trace(growth_forms, axis1=1, axis2=2).max())
         if not 0 < size < np.inf:
             break
-        grown = grown / size
+        growth_forms = growth_forms / size
         logs.append(np.log(size))
     # In the mean, as modes that follow each other may grow and decay in turn.
-    kept = min(1.0, KEPT / float(np.exp(np.mean(logs)))) if logs else 1.0
+    retention = min(1.0, KEPT / float(np.exp(np.mean(logs)))) if logs else 1.0
     forms = np.array(unit)
     for _ in range(SWEEPS):
-        forms = unit + kept * mean(forms)
+        forms = unit + retention * mean(forms)
     sizes = np.trace(forms, axis1=1, axis2=2)[:, None, None] / n
     return np.asarray(forms + FLAT * sizes * np.eye(n))
 

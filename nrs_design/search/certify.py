@@ -22,7 +22,7 @@ from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.search.work import Allowance, Fuse
 
 # Share of the rest of the budget, for a faster decay than that of the first proof.
-CLIMBING_ON = 0.5
+FASTER_SHARE = 0.5
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
     "is not stable, and no loop of the spec need be there: nothing that covers the enclosure can "
@@ -78,11 +78,11 @@ def certify(
             for left, block in zip(range(len(blocks), 0, -1), blocks, strict=True)
         ]
         result = _combine(merged, blocks, parts)
-    statements = _spread(result.statements, merged, system)
+    statements = _spread_statements(result.statements, merged, system)
     if result.verdict is Verdict.PROVED and limits.more:
-        for name, search, own in asides(system, allowance):
+        for name, search, part in asides(system, allowance):
             progress(name)
-            found, attempt = attempted(name, search, system, own)
+            found, attempt = attempted(name, search, system, part)
             statements += () if found is None else (found,)
             result = replace(result, attempts=(*result.attempts, attempt))
     if merged is not system or len(blocks) > 1:
@@ -124,7 +124,9 @@ def _certify_block(system: SwitchedSystem, block: tuple[int, ...], task: _Task) 
     full = diagonal_block(system, block)
     merged = merge_equal_modes(full)
     result = _climb(merged, task)
-    return replace(result, system=full, statements=_spread(result.statements, merged, full))
+    return replace(
+        result, system=full, statements=_spread_statements(result.statements, merged, full)
+    )
 
 
 def _climb(system: SwitchedSystem, task: _Task) -> Certification:
@@ -137,8 +139,8 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
     best: tuple[str, AbstractEvidence] | None = None
 
     def known() -> frozenset[Shows]:
-        shown = remarks if best is None else (best[1], *remarks)
-        return frozenset(evidence.shown(system) for evidence in shown)
+        statements = remarks if best is None else (best[1], *remarks)
+        return frozenset(evidence.shown(system) for evidence in statements)
 
     for name, search in steps(system, method, limits, allowance, known):
         if attempts and family.allowance.left <= 0:
@@ -160,7 +162,7 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
             continue
         if best is None and _may_be_faster(evidence, system, limits):
             # Later rungs need a part of the budget.
-            family = replace(family, allowance=allowance.part(CLIMBING_ON))
+            family = replace(family, allowance=allowance.part(FASTER_SHARE))
         if best is None or _is_faster(evidence, best[1], system):
             best = name, evidence
         if not _may_be_faster(best[1], system, limits):
@@ -172,25 +174,25 @@ def _climb(system: SwitchedSystem, task: _Task) -> Certification:
 
 def _may_be_faster(evidence: AbstractEvidence, system: SwitchedSystem, limits: Limits) -> bool:
     """Tell whether the required decay rate is not proved yet, and within reach."""
-    wanted, rate = limits.decay_rate, evidence.proved_rate(system)
-    if wanted is None or not limits.optimize_rate or evidence.shows is not Shows.STABILITY:
+    required_rate, rate = limits.decay_rate, evidence.proved_rate(system)
+    if required_rate is None or not limits.optimize_rate or evidence.shows is not Shows.STABILITY:
         return False
     shown = rate_per_second(rate, system)
-    if shown is None or shown >= wanted:
+    if shown is None or shown >= required_rate:
         return False
     with floats_in_silence():
         limit = rate_per_second(rate_limit(system), system)
-    return limit is None or limit > wanted
+    return limit is None or limit > required_rate
 
 
-def _is_faster(one: AbstractEvidence, other: AbstractEvidence, system: SwitchedSystem) -> bool:
+def _is_faster(candidate: AbstractEvidence, best: AbstractEvidence, system: SwitchedSystem) -> bool:
     """Tell whether a proof shows more decay than another, of all that the other is about."""
-    rates = [rate_per_second(item.proved_rate(system), system) for item in (one, other)]
+    rates = [rate_per_second(item.proved_rate(system), system) for item in (candidate, best)]
     if rates[0] is None or rates[1] is None or rates[0] <= rates[1]:
         return False
     return all(
-        getattr(one, about) >= getattr(other, about)
-        for about in ("covers_lost_contact", "covers_rounding", "covers_clock")
+        getattr(candidate, ability) >= getattr(best, ability)
+        for ability in ("covers_lost_contact", "covers_rounding", "covers_clock")
     )
 
 
@@ -216,7 +218,7 @@ def _conclude(
     )
 
 
-def _spread(
+def _spread_statements(
     statements: tuple[AbstractEvidence, ...], merged: SwitchedSystem, system: SwitchedSystem
 ) -> tuple[AbstractEvidence, ...]:
     """Carry evidence over from merged modes to all modes."""

@@ -86,7 +86,7 @@ class _Program:
         for k in range(sets):
             at = corners * size + 2 * k * square
             for v, A in enumerate(self.modes[k]):
-                multipliers = packed_columns(_of_multipliers(A))
+                multipliers = packed_columns(_multiplier_forms(A))
                 program.add(zero, [(v * size, functions), (at, multipliers), margin])
         found = program.maximize(allowance)
         if found is None or found.x[-1] <= 0:
@@ -121,7 +121,7 @@ class _Program:
                 claim,
             )
 
-    def _of_functions(self, basis: Array, rate: float) -> Array:
+    def _function_forms(self, basis: Array, rate: float) -> Array:
         """Return the forms of the entries of P in an inequality, shape (N, 2n, 2n)."""
         nothing = np.zeros_like(basis)
         if self.time is Time.CONTINUOUS:
@@ -130,7 +130,7 @@ class _Program:
         return np.block([[rate**2 * basis, nothing], [nothing, -basis]])
 
 
-def _of_multipliers(A: Array) -> Array:
+def _multiplier_forms(A: Array) -> Array:
     """Return the forms of the entries of F, then of G, shape (2 n^2, 2n, 2n)."""
     n = len(A)
     E = np.eye(n * n).reshape(n * n, n, n)

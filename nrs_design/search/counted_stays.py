@@ -33,7 +33,7 @@ from nrs_design.search.work import Allowance
 # Decay rates of the form of a controller in force, as shares of the slowest decay of its modes.
 SHARES = (0.7, 0.4, 0.85, 0.2, 0.1)
 # Positions of rates that are tried for each of them, and the share of the budget for this.
-LOOKED_AT, LOOKING = (0.0, 0.1, 0.25, 0.4, 0.6), 0.05
+TEST_POSITIONS, TEST_SHARE = (0.0, 0.1, 0.25, 0.4, 0.6), 0.05
 RATES = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
 # Digits of how much larger the forms of a stay are than the first.
 WEIGHT_BITS = 24
@@ -64,11 +64,11 @@ def search_stays(family: Family) -> Candidates[FormsOnGraph]:
     if clock is None or (stays := stays_of(clock)) is None:
         return NO_MARGIN
     free = replace(family, system=replace(family.system, clock=None))
-    together = search_together(replace(free, allowance=family.allowance.part(LOOKING)))
+    together = search_together(replace(free, allowance=family.allowance.part(TEST_SHARE)))
     everywhere = [(state, 1) for state in range(clock.length)]
     for candidate in together:
         graph = candidate.evidence
-        yield Candidate(_at_states(graph, [everywhere] * len(graph.nodes)), candidate.words)
+        yield Candidate(_copy_nodes(graph, [everywhere] * len(graph.nodes)), candidate.words)
     parts = matrices_of_kinds(family, clock)
     slowest = [limit_rate(own, Time.DISCRETE) for own in parts]
     limit = max(slowest)
@@ -132,10 +132,10 @@ class CountedProgram:
             weights = [round(growth**spent * 2**WEIGHT_BITS) for spent in range(len(stay))]
             copies += [[*zip(stay, weights, strict=True)]] * places
         log2 = graph.denominator_log2 + WEIGHT_BITS
-        return _at_states(replace(graph, denominator_log2=log2), copies)
+        return _copy_nodes(replace(graph, denominator_log2=log2), copies)
 
 
-def _at_states(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]]) -> FormsOnGraph:
+def _copy_nodes(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]]) -> FormsOnGraph:
     """Return a graph with copies of nodes, each at a state and so many times as large."""
     nodes, targets = list[Node](), list[list[tuple[int, int]]]()
     for node, own in zip(graph.nodes, copies, strict=True):
@@ -155,8 +155,8 @@ def _at_states(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]])
 
 def _reach(program: CountedProgram, limit: float, family: Family) -> int:
     """Return how many of some rates, the slowest first, a program has a solution for."""
-    part, found = family.allowance.part(LOOKING), 0
-    for position in LOOKED_AT:
+    part, found = family.allowance.part(TEST_SHARE), 0
+    for position in TEST_POSITIONS:
         if program.solve(rate_at(position, limit, Time.DISCRETE), part) is None:
             break
         found += 1
@@ -171,23 +171,27 @@ def _draw(
     rates: Sequence[float],
 ) -> Drawing:
     """Draw a node for each controller, as if a stay had one state."""
-    system, lost = family.system, family.system.contact is not None
-    ahead = tuple(
+    system, is_unilateral = family.system, family.system.contact is not None
+    targets = tuple(
         tuple(
             other if clock.after(stay[-1], other) is not None else NOWHERE for other in clock.kinds
         )
         for stay in stays
     )
-    short = replace(system, clock=replace(clock, length=len(stays), ahead=ahead))
-    places = [MODES, FREE] if lost else [MODES]
-    every = [at_place(place, k) for k in clock.kinds for place in places]
-    apart = separating if lost else round_coordinates
+    short = replace(system, clock=replace(clock, length=len(stays), ahead=targets))
+    places = [MODES, FREE] if is_unilateral else [MODES]
+    places_of_nodes = [at_place(place, k) for k in clock.kinds for place in places]
+    find_coordinates = separating if is_unilateral else round_coordinates
 
-    def coordinates(own: Array, rate: float) -> FormCoordinates:
-        mean = own.mean(axis=0)
-        kept = mean / max(rate, limit_rate(mean[None], Time.DISCRETE) / KEPT)
-        return FormCoordinates(family.exponents, apart(own_norms(kept[None], Time.DISCRETE)[0]))
+    def coordinates(matrices: Array, rate: float) -> FormCoordinates:
+        mean = matrices.mean(axis=0)
+        slowed_mean = mean / max(rate, limit_rate(mean[None], Time.DISCRETE) / KEPT)
+        return FormCoordinates(
+            family.exponents, find_coordinates(own_norms(slowed_mean[None], Time.DISCRETE)[0])
+        )
 
     forms = tuple(k for k in clock.kinds for _ in places)
-    drawn = tuple(map(coordinates, parts, rates))
-    return Drawing(short, graph_of(every, len(system.roundings)), forms, drawn)
+    coordinates_of_forms = tuple(map(coordinates, parts, rates))
+    return Drawing(
+        short, graph_of(places_of_nodes, len(system.roundings)), forms, coordinates_of_forms
+    )

@@ -60,8 +60,8 @@ class Drawing:
     def like(self, node: int) -> list[int]:
         """Return the nodes with the form of one at its place."""
         nodes = zip(self.forms, (node.place for node in self.graph.nodes), strict=True)
-        same = self.forms[node], self.graph.nodes[node].place
-        return [k for k, other in enumerate(nodes) if other == same]
+        key = self.forms[node], self.graph.nodes[node].place
+        return [k for k, other in enumerate(nodes) if other == key]
 
     @property
     def is_finite(self) -> bool:
@@ -69,7 +69,10 @@ class Drawing:
         modes = [mode.A for mode in self.system.modes]
         sizes = {A.shape for A in modes}
         alike = (to_floats([A for A in modes if A.shape == size]) for size in sizes)
-        return all(np.isfinite(own).all() for own in (*alike, *(c.whole for c in self.coordinates)))
+        return all(
+            np.isfinite(matrices).all()
+            for matrices in (*alike, *(c.whole for c in self.coordinates))
+        )
 
 
 @dataclass(frozen=True)
@@ -123,8 +126,8 @@ class Inequality:
         self,
         starts: Sequence[int],
         sizes: Sequence[int],
-        keeps: float,
-        counts: float,
+        weight_before: float,
+        weight_after: float,
         unit: int = 0,
     ) -> list[tuple[int, Array]]:
         """Return what packed forms, from where they start, make of it, without facts.
@@ -137,10 +140,10 @@ class Inequality:
         M = np.zeros((self.size, sizes[self.after]))
         M[:, self.left] = self.M.T
         if self.is_flow:
-            N = -np.ldexp(M, unit) - counts / 2 * E
+            N = -np.ldexp(M, unit) - weight_after / 2 * E
             return [(starts[self.before], packed_congruence(E, N) + packed_congruence(N, E))]
-        before = starts[self.before], packed_congruence(keeps * E, E)
-        return [before, (starts[self.after], packed_congruence(-counts * M, M))]
+        before = starts[self.before], packed_congruence(weight_before * E, E)
+        return [before, (starts[self.after], packed_congruence(-weight_after * M, M))]
 
     def changed(self, Q: Array) -> Array:
         """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for forms or M of any number."""
@@ -187,10 +190,10 @@ def inequalities(
     system, graph = drawing.system, drawing.graph
     wholes = [one.whole for one in drawing.coordinates]
     inverses = [np.linalg.inv(whole) for whole in wholes]
-    listed = [*graph.edges_in_time(system), *_at_once(drawing)]
-    names, edges = _named(drawing, listed), list[Inequality]()
+    all_edges = [*graph.edges_in_time(system), *_find_instant_switches(drawing)]
+    names, edges = _name_facts(drawing, all_edges), list[Inequality]()
     moves, known = list[tuple[int, Step, int]](), dict[int, FloatStep]()
-    for a, step, b in listed:
+    for a, step, b in all_edges:
         if isinstance(step, EnclosedStep):
             before, after = drawing.forms[a], drawing.forms[b]
             kept, left = (np.arange(len(wholes[k])) for k in (before, after))
@@ -249,11 +252,13 @@ def inequalities(
     return edges, dict(scales)
 
 
-def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list[dict[str, Fact]]:
+def _name_facts(
+    drawing: Drawing, all_edges: Sequence[tuple[int, AnyStep, int]]
+) -> list[dict[str, Fact]]:
     """Return for each node what the facts of steps to it are called."""
     first = [drawing.like(k)[0] for k in range(len(drawing.graph.nodes))]
     targets: dict[str, set[int]] = {}
-    for _, step, b in listed:
+    for _, step, b in all_edges:
         for name in step.facts:
             targets.setdefault(name, set()).add(first[b])
     return [
@@ -262,7 +267,7 @@ def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list
     ]
 
 
-def _at_once(drawing: Drawing) -> Iterator[tuple[int, Step, int]]:
+def _find_instant_switches(drawing: Drawing) -> Iterator[tuple[int, Step, int]]:
     """Yield the switches that take no time, which are not among the edges in time."""
     graph, system = drawing.graph, drawing.system
     if graph.stays is None:
@@ -289,30 +294,30 @@ def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
 
 def distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
     """Return edges that differ by more than rounding, and for each edge the index of its equal."""
-    kept: list[Inequality] = []
+    representatives: list[Inequality] = []
     groups: dict[object, list[tuple[int, Array]]] = {}
     found = []
     for edge in edges:
         key = edge.kind
         numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
-        near = NEARLY * np.abs(numbers).max(initial=0.0)
+        tolerance = NEARLY * np.abs(numbers).max(initial=0.0)
         # Edges that are near have nearly the same sum, so they are looked for in three places only.
-        width = np.ldexp(1.0, int(np.frexp(near)[1])) * max(len(numbers), 1)
-        share = float(numbers @ _spread(len(numbers)) / width)
+        width = np.ldexp(1.0, int(np.frexp(tolerance)[1])) * max(len(numbers), 1)
+        share = float(numbers @ _mixing_weights(len(numbers)) / width)
         place = int(share // 1) if isfinite(share) else 0
-        beside = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
-        others = chain.from_iterable(beside)
-        same = (k for k, other in others if np.abs(other - numbers).max() <= near)
-        k = min(same, default=len(kept))
-        if k == len(kept):
-            kept.append(edge)
+        neighbours = (groups.get((key, width, place + i), ()) for i in (-1, 0, 1))
+        others = chain.from_iterable(neighbours)
+        same = (k for k, other in others if np.abs(other - numbers).max() <= tolerance)
+        k = min(same, default=len(representatives))
+        if k == len(representatives):
+            representatives.append(edge)
             groups.setdefault((key, width, place), []).append((k, numbers))
         found.append(k)
-    return kept, found
+    return representatives, found
 
 
 @cache
-def _spread(count: int) -> Array:
+def _mixing_weights(count: int) -> Array:
     """Return numbers between -1 and 1 of which no few add up to nothing."""
     return np.cos(np.arange(count))
 
@@ -331,8 +336,8 @@ class FloatStep:
         """Convert a step."""
         units = step.units
 
-        def floats(entries: Sequence[int], below: int = 1) -> Array:
-            row = [_ratio(e, unit * below) for e, unit in zip(entries, units, strict=False)]
+        def floats(entries: Sequence[int], denominator: int = 1) -> Array:
+            row = [_divide(e, unit * denominator) for e, unit in zip(entries, units, strict=False)]
             return np.array(row + [0.0] * (len(units) - len(row)))
 
         try:
@@ -342,14 +347,14 @@ class FloatStep:
             M = np.array([floats(entries, step.over) for entries in step.rows])
         return cls(
             M,
-            tuple((name, i, floats(q, below)) for name, i, q, below in step.errors),
+            tuple((name, i, floats(q, denominator)) for name, i, q, denominator in step.errors),
             tuple((name, floats(c, below)) for name, c, below in step.crossings),
             tuple((name, floats(left), floats(right)) for name, left, right in step.products),
         )
 
 
-def _ratio(above: int, below: int) -> float:
+def _divide(numerator: int, denominator: int) -> float:
     try:
-        return above / below
+        return numerator / denominator
     except OverflowError:
         return inf

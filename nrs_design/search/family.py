@@ -60,8 +60,8 @@ class Family:
         if not lasting and system.time is Time.CONTINUOUS:
             limit = _slowest(system.modes, Time.DISCRETE)
         if not system.is_uniform:
-            none = np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64)
-            return cls(system, *none, limit, allowance, optimize_rate)
+            no_matrices = np.zeros((0, 0, 0)), np.zeros(0, dtype=np.int64)
+            return cls(system, *no_matrices, limit, allowance, optimize_rate)
         matrices = to_floats([mode.A for mode in system.modes])
         exponents = balance(matrices)
         scaled = scale_states(matrices, exponents)
@@ -103,13 +103,13 @@ def limit_rate(matrices: NDArray[np.float64], time: Time) -> float:
 
 def nearly_same(stack: NDArray[np.float64]) -> list[int]:
     """Return for each entry of a stack the number of the first that floats hardly tell from it."""
-    kept: list[int] = []
+    representatives: list[int] = []
     found: list[int] = []
     for i, one in enumerate(stack):
-        near = NEARLY * np.abs(one).max()
-        k = next((k for k in kept if np.abs(stack[k] - one).max() <= near), i)
+        tolerance = NEARLY * np.abs(one).max()
+        k = next((k for k in representatives if np.abs(stack[k] - one).max() <= tolerance), i)
         if k == i:
-            kept.append(i)
+            representatives.append(i)
         found.append(k)
     return found
 

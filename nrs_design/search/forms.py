@@ -51,7 +51,7 @@ NEARLY_ALL = 0.8
 # takes longer than to find that. Our own method is content with this share of the margin instead.
 # It begins with multipliers of this size, or at this share of what it found last.
 DEAR, BARELY = 0.05, 0.1
-START_MULTIPLIER, BACK = 0.1, 0.7
+START_MULTIPLIER, RESTART_SHARE = 0.1, 0.7
 # A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
 LARGEST_MULTIPLIER = 64.0
 # Forms reach up to the identity where there are any; all of them below this are zero.
@@ -80,21 +80,21 @@ class FormsProgram:
         self.drawing = drawing
         self.time, self.degree = drawing.system.time, drawing.graph.degree
         self.sizes = [len(one.T) for one in drawing.coordinates]
-        drawn, self.scales = inequalities(drawing)
-        self.every = [timed(edge) for edge in drawn]
+        stated_edges, self.scales = inequalities(drawing)
+        self.every = [timed(edge) for edge in stated_edges]
         self.edges, self.stands_for = distinct(self.every)
         count = len(self.edges)
         # With few edges for each form, nearly all are needed.
         whole = self.degree > 1 or count <= FEW_EACH * len(self.sizes)
-        few = count if whole else min(count, FIRST_EDGES)
+        edge_count = count if whole else min(count, FIRST_EDGES)
         # Edges of the program; an edge that a solution violates is added, and stays.
-        self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
+        self.active = sorted({k * (count - 1) // max(edge_count - 1, 1) for k in range(edge_count)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         if flows and self.degree > 1:
             # The unit of the modes themselves: lifted entries, and margins with them, grow with
             # the degree.
-            given = np.array([mode.A.floats() for mode in drawing.system.modes])
-            flows = [float(np.abs(scale_states(given, balance(given))).max())]
+            mode_matrices = np.array([mode.A.floats() for mode in drawing.system.modes])
+            flows = [float(np.abs(scale_states(mode_matrices, balance(mode_matrices))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
         self._last: Array | None = None  # What our own method found last
 
@@ -184,7 +184,7 @@ class FormsProgram:
     def _start(self) -> Array:
         """Return forms and multipliers inside their bounds, and their margin if it is known."""
         if self._last is not None:
-            return BACK * self._last
+            return RESTART_SHARE * self._last
         halves = [pack(np.eye(n) / 2) for n in self.sizes]
         return np.array([*np.concatenate(halves), *[START_MULTIPLIER] * len(self.scales), 0.0])
 
@@ -249,25 +249,25 @@ class FormsProgram:
 
     def _read(self, x: Array, rate: float) -> Solution | None:
         """Take apart what the solver returned, in the units of edges; None without a margin."""
-        *packed, rest = np.split(x[:-1], self._starts[1:])
+        *packed, multipliers_and_forms = np.split(x[:-1], self._starts[1:])
         forms = [unpack(part, n) for part, n in zip(packed, self.sizes, strict=True)]
         if x[-1] <= 0 or max(np.abs(Q).max() for Q in forms) < NOTHING:
             return None
-        multipliers, free = np.split(rest, [len(self.scales)])
+        multipliers, free = np.split(multipliers_and_forms, [len(self.scales)])
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         if self.degree == 1:
             return replace(self.solution_of(forms), multipliers=share * multipliers)
         # Inequalities of maps have been divided by the weight of the form after the step.
-        keeps = [
+        weights = [
             1.0 if edge.is_flow else 1 / f
             for edge, f in zip(self.edges, self.factors(rate), strict=True)
         ]
         # Where forms vanish, all edges are active.
         counts = np.cumsum([len(basis) for basis in self._vanishing])[:-1]
         vanishing = [
-            keep * np.tensordot(part, basis, axes=1)
-            for keep, part, basis in zip(
-                keeps, np.split(free, counts), self._vanishing, strict=True
+            weight * np.tensordot(part, basis, axes=1)
+            for weight, part, basis in zip(
+                weights, np.split(free, counts), self._vanishing, strict=True
             )
         ]
         return Solution(forms, share * multipliers, vanishing)
@@ -288,16 +288,16 @@ class FormsProgram:
         """
         Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
         if edge.is_flow:
-            keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
+            weight = -2 * self.degree * float(np.ldexp(rate, self.unit))
         else:
-            keeps = 1 / edge.weight(rate, self.degree, self.time)
-        return np.asarray(self._form(edge, solution, N) + keeps * Q)
+            weight = 1 / edge.weight(rate, self.degree, self.time)
+        return np.asarray(self._form(edge, solution, N) + weight * Q)
 
     def edges_at(self, system: SwitchedSystem) -> list[Inequality]:
         """Return the edges for another system of the same shape, in the same units."""
-        every, _ = inequalities(replace(self.drawing, system=system), self.scales)
+        all_edges, _ = inequalities(replace(self.drawing, system=system), self.scales)
         first = [self.stands_for.index(k) for k in range(len(self.edges))]
-        return [every[k] for k in first]
+        return [all_edges[k] for k in first]
 
     def solution_of(self, forms: list[Array]) -> Solution:
         """Return quadratic forms, however they were found, as a solution without facts."""
@@ -332,15 +332,15 @@ class FormsProgram:
             except np.linalg.LinAlgError:
                 return stable
             form = inverse @ self._form(edge, solution, N) @ inverse.T
-            least = float(np.linalg.eigvalsh(form)[:, 0].min())
+            smallest = float(np.linalg.eigvalsh(form)[:, 0].min())
             if edge.is_flow:
-                rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
+                rates.append(float(np.ldexp(smallest / (2 * self.degree), -self.unit)))
             elif edge.lasts:
                 # Nothing may be left of a form, which no logarithm takes.
-                kept = max(-least * edge.share, np.finfo(float).tiny)
+                contraction = max(-smallest * edge.share, np.finfo(float).tiny)
                 power = 0.5 / (self.degree * edge.lasts)
                 continuous = self.time is Time.CONTINUOUS
-                rates.append(-power * log(kept) if continuous else kept**power)
+                rates.append(-power * log(contraction) if continuous else contraction**power)
         slowest = min if self.time is Time.CONTINUOUS else max
         return slowest(rates, default=stable)
 
@@ -362,14 +362,14 @@ class FormsProgram:
         found = dict(zip(self.scales, multipliers, strict=True))
         taus, worst = _taken_by_errors(self, solution) if errors else ({}, 0.0)
         found |= taus
-        for lost, bits in product(LOST_TO_ERRORS if errors else (0.0,), digits):
+        for loss_factor, bits in product(LOST_TO_ERRORS if errors else (0.0,), digits):
             rate = claim
             if errors:
-                rate = round_rate(sqrt(float(claim) ** 2 + lost * worst), Time.DISCRETE)
+                rate = round_rate(sqrt(float(claim) ** 2 + loss_factor * worst), Time.DISCRETE)
             if errors and rate >= 1:
                 return
             if bits != digits[-1] and not errors:
-                coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+                coarse = [_round_floats(Q, bits - exponent) for Q in balanced]
                 own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
                 if not self.margins(replace(solution, forms=own), float(claim)).min() > 0:
                     continue
@@ -419,7 +419,7 @@ def _round_vanishing(
         exponents = program.drawing.coordinates[edge.before].exponents[edge.kept]
         N = round_form(solution.vanishing[program.stands_for[k]], top - exponents, bits)
         factor, unit = _factor(step, program.degree, graph.rate), program.unit * edge.is_flow
-        scaled = [[_shift(factor * entry, -unit) for entry in row] for row in N]
+        scaled = [[_shift_bits(factor * entry, -unit) for entry in row] for row in N]
         groups = products(program.variables(edge.size), program.degree)
         found.append(tuple(map(tuple, make_vanish(scaled, groups))))
     return tuple(found)
@@ -452,16 +452,16 @@ def _taken_by_errors(program: FormsProgram, solution: Solution) -> tuple[dict[Fa
 
 def _factor(step: Step, degree: int, rate: Fraction) -> int:
     """Return the factor of the exact inequality of a lifted step."""
-    moved = lifted(step, degree, rate)
+    lifted_step = lifted(step, degree, rate)
     if not step.is_flow:
-        return int(moved.units[0]) ** 2
-    return (2 * degree * rate * moved.over).denominator * moved.over
+        return int(lifted_step.units[0]) ** 2
+    return (2 * degree * rate * lifted_step.over).denominator * lifted_step.over
 
 
-def _shift(value: int, exponent: int) -> int:
+def _shift_bits(value: int, exponent: int) -> int:
     return value << exponent if exponent >= 0 else value >> -exponent
 
 
-def _rounded(Q: Array, bits: int) -> Array:
+def _round_floats(Q: Array, bits: int) -> Array:
     """Round to so many bits after the binary point, in floating point."""
     return np.asarray(np.ldexp(np.rint(np.ldexp((Q + Q.T) / 2, bits)), -bits))

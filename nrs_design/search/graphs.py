@@ -90,13 +90,13 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
 def draw_conewise_modes(family: Family) -> Drawing:
     """Draw a node for each mode, in contact and free, which takes its steps to every node."""
     system = family.system
-    own = FormCoordinates(family.exponents, separating_coordinates(family))
-    flying = FormCoordinates(family.exponents[:-1], own.T[:-1, :-1])
+    coordinates = FormCoordinates(family.exponents, separating_coordinates(family))
+    flying = FormCoordinates(family.exponents[:-1], coordinates.T[:-1, :-1])
     names = [mode.name for mode in system.every_mode]
-    like = stand_ins(names[: len(system.modes)], family.matrices)
-    like |= stand_ins(names[len(system.modes) :], free_motions(family))
-    number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
-    contact = {like[mode.name] for mode in system.modes}
+    representative = stand_ins(names[: len(system.modes)], family.matrices)
+    representative |= stand_ins(names[len(system.modes) :], free_motions(family))
+    number = {name: k for k, name in enumerate(dict.fromkeys(representative.values()))}
+    contact = {representative[mode.name] for mode in system.modes}
     return Drawing(
         system,
         FormsOnGraph(
@@ -106,8 +106,8 @@ def draw_conewise_modes(family: Family) -> Drawing:
             # The form of a state is that of the mode that takes the next step.
             edges=tuple(Arc(k, name, None) for k, name in enumerate(names)),
         ),
-        tuple(number[like[name]] for name in names),
-        tuple(own if name in contact else flying for name in number),
+        tuple(number[representative[name]] for name in names),
+        tuple(coordinates if name in contact else flying for name in number),
     )
 
 
@@ -124,15 +124,17 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
         return OUT_OF_RANGE
     words = best_words(turns_graph(family, clock), family.allowance.part(WORDS))
     limit, ended = max((growth for _, growth in words), default=0.0), None
-    every = [mode.name for mode in system.every_mode]
-    kinds = Counter(clock.kind_of(every))
+    mode_names = [mode.name for mode in system.every_mode]
+    kinds = Counter(clock.kind_of(mode_names))
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-7, nearest=0.99, few=True, bits=digits(24))
     for drawing in draw_turns(family, clock):
         if not drawing.is_finite:
             return OUT_OF_RANGE
-        of = drawing.forms[:: len(drawing.forms) // clock.length]
-        different = {(of[k], kind, of[target]) for k, kind, target in clock.turns()}
+        form_of_state = drawing.forms[:: len(drawing.forms) // clock.length]
+        different = {
+            (form_of_state[k], kind, form_of_state[target]) for k, kind, target in clock.turns()
+        }
         checked = sum(kinds[kind] for _, kind, _ in different)
         rounds = bool(system.roundings) and checked <= MOST_ROUNDED
         coverings = (True, False) if rounds else (False,)
@@ -145,16 +147,16 @@ def draw_turns(family: Family, clock: Clock) -> Iterator[Drawing]:
 
     States of a large rule first have a form for all that are alike.
     """
-    system, lost = family.system, family.system.contact is not None
-    places = [MODES, FREE] if lost else [MODES]
-    every = [f"{place} {k}" for k in range(clock.length) for place in places]
-    graph = graph_of(every, len(system.roundings))
+    system, is_unilateral = family.system, family.system.contact is not None
+    places = [MODES, FREE] if is_unilateral else [MODES]
+    places_of_nodes = [f"{place} {k}" for k in range(clock.length) for place in places]
+    graph = graph_of(places_of_nodes, len(system.roundings))
     own = [FormCoordinates(family.exponents, T) for T in _coordinates(family, clock)]
     if not clock.is_round and clock.length > FEW_STATES:
-        like = _alike(clock)
-        number = {one: i for i, one in enumerate(dict.fromkeys(like))}
-        forms = tuple(number[one] for one in like for _ in places)
-        coordinates = tuple(own[like.index(one)] for one in number)
+        representative = _alike(clock)
+        number = {one: i for i, one in enumerate(dict.fromkeys(representative))}
+        forms = tuple(number[one] for one in representative for _ in places)
+        coordinates = tuple(own[representative.index(one)] for one in number)
         yield Drawing(system, graph, forms, coordinates)
     forms = tuple(k for k in range(clock.length) for _ in places)
     yield Drawing(system, graph, forms, tuple(own))
@@ -171,10 +173,10 @@ def _alike(clock: Clock) -> list[tuple[int, int]]:
             ago[target] = min(ago[target], 0 if missed else ago[state] + 1)
     found = []
     for state, last in enumerate(ago):
-        more, at = 0, clock.after(state, 1)
-        while at is not None and more < clock.length:
-            more, at = more + 1, clock.after(at, 1)
-        found.append((more, last))
+        misses, successor = 0, clock.after(state, 1)
+        while successor is not None and misses < clock.length:
+            misses, successor = misses + 1, clock.after(successor, 1)
+        found.append((misses, last))
     return found
 
 
@@ -184,9 +186,9 @@ def _coordinates(family: Family, clock: Clock) -> Array:
     The part of the state that a mean mode keeps until rest is round in them.
     """
     means = np.array([own.mean(axis=0) for own in matrices_of_kinds(family, clock)])
-    apart = round_coordinates if family.system.contact is None else separating
+    find_coordinates = round_coordinates if family.system.contact is None else separating
     names = [*map(str, clock.kinds)]
-    return round_nodes(StepGraph.of_clock(clock, names, means, clock.kinds), apart)
+    return round_nodes(StepGraph.of_clock(clock, names, means, clock.kinds), find_coordinates)
 
 
 def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
@@ -195,9 +197,9 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     Modes may be of any sizes; d is beyond 1 in discrete time only.
     """
     system, allowance = family.system, family.allowance
-    cost, what = functions_cost(system, degree)
+    cost, description = functions_cost(system, degree)
     checked = replace(cost, work=cost.work + work_of_checks(system, degree))
-    allowance.require(checked, f"{what}, with the exact check of what it finds,")
+    allowance.require(checked, f"{description}, with the exact check of what it finds,")
     always = family.optimize_rate or not family.stand_ins()
     limit, ended = limit_of_cycles(family), None
     if limit <= 0 if system.time is Time.CONTINUOUS else limit >= 1:
@@ -245,25 +247,25 @@ def draw_each_mode(family: Family, degree: int) -> Iterator[Drawing]:
     but takes longer; in coordinates in which what a mean signal keeps is round.
     """
     system = family.system
-    like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
-    number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
+    representative = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
+    number = {name: k for k, name in enumerate(dict.fromkeys(representative.values()))}
     matrices = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
-    shared = [balance(np.array(list(matrices.values())))] if system.is_uniform else []
+    common_exponents = [balance(np.array(list(matrices.values())))] if system.is_uniform else []
     coordinates = []
     for name in number:
-        d = shared[0] if shared else balance(matrices[name][None])
+        d = common_exponents[0] if common_exponents else balance(matrices[name][None])
         coordinates.append(lifted_coordinates(d, degree))
     stays = system.stays()
     leaving = left_modes(system)
-    forms = tuple(number[like[mode.name]] for mode in system.modes)
+    forms = tuple(number[representative[mode.name]] for mode in system.modes)
     nodes = tuple(Node(mode.name, ()) for mode in system.modes)
     graph = FormsOnGraph(nodes, 0, ANY_RATE, degree, stays=Stays(leaving))
     drawing = Drawing(system, graph, forms, tuple(coordinates))
     yield drawing
-    every = tuple(mode.name for mode in system.modes if stays[mode.name].longest is not None)
-    if every and system.time is Time.CONTINUOUS and drawing.is_finite:
-        own = round_stays(system, every)
-        graph = replace(graph, stays=Stays(every))
+    stay_modes = tuple(mode.name for mode in system.modes if stays[mode.name].longest is not None)
+    if stay_modes and system.time is Time.CONTINUOUS and drawing.is_finite:
+        own = round_stays(system, stay_modes)
+        graph = replace(graph, stays=Stays(stay_modes))
         yield replace(drawing, graph=graph, coordinates=tuple(own[name] for name in number))
 
 
@@ -274,10 +276,10 @@ def search_together(family: Family) -> Candidates[FormsOnGraph]:
     """
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    lost = family.system.contact is not None
+    is_unilateral = family.system.contact is not None
     covered = (True,) if family.system.roundings else ()
-    coverings = (*covered, False) if lost or not covered else covered
-    drawing = draw_together(family, 1, lost=lost)
+    coverings = (*covered, False) if is_unilateral or not covered else covered
+    drawing = draw_together(family, 1, lost=is_unilateral)
     if not drawing.is_finite:
         return OUT_OF_RANGE
     program = FormsProgram(drawing)
@@ -372,10 +374,10 @@ def left_modes(system: SwitchedSystem) -> tuple[str, ...]:
         if stay.longest is None:
             return False
         width = float(stay.longest - stay.shortest)
-        few = width < FEW_STAYS
+        is_narrow = width < FEW_STAYS
         if system.time is Time.CONTINUOUS:
             # Stays that are nearly of one length are enclosed well.
-            few = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
-        return few or not is_stable(mode.A, system.time)
+            is_narrow = width * float(np.linalg.norm(mode.A.floats())) <= NARROW_STAYS
+        return is_narrow or not is_stable(mode.A, system.time)
 
     return tuple(mode.name for mode in system.modes if is_left(mode))

@@ -65,17 +65,19 @@ def maximize(groups: Sequence[ConeGroup], start: Array, allowance: Allowance) ->
     tell whether it can be positive.
     """
     step, y, margin = step_cost(groups, len(start)), start.copy(), start[-1]
-    what = f"a program of {len(y)} unknowns and {sum(len(X.constants) for X in groups)} blocks"
-    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), what)
+    description = (
+        f"a program of {len(y)} unknowns and {sum(len(X.constants) for X in groups)} blocks"
+    )
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), description)
     y[-1] = 0.0
     counting = [group.at(y) for group in groups if group.unknowns[-1] == len(y) - 1]
-    least = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)
-    below = max(0.1 * max(float(np.abs(X).max()) for X in counting), START_FLOOR)
-    y[-1] = least - (min(below, WARM * margin) if margin > 0 else below)
+    smallest = min(float(np.linalg.eigvalsh(X)[:, 0].min()) for X in counting)
+    distance = max(0.1 * max(float(np.abs(X).max()) for X in counting), START_FLOOR)
+    y[-1] = smallest - (min(distance, WARM * margin) if margin > 0 else distance)
     X, bound = [group.at(y) for group in groups], np.inf
-    Z = [np.asarray(np.linalg.inv(own)) for own in X]
-    counted = -_adjoint(groups, Z, len(y))[-1]
-    Z = [own / counted for own in Z]
+    Z = [np.asarray(np.linalg.inv(block)) for block in X]
+    dual_sum = -_adjoint(groups, Z, len(y))[-1]
+    Z = [own / dual_sum for own in Z]
     for _ in range(MAX_STEPS):
         if not allowance.goes_on(step.work):
             return y
@@ -118,19 +120,19 @@ def _step(
         _, entries, Vt = np.linalg.svd(_transposed(R) @ L)
         # X as ``scale X scale'``, and Z by the inverse.
         scale = np.sqrt(entries)[..., None] * Vt @ np.linalg.inv(L)
-        moved = scale[:, None] @ group.forms @ _transposed(scale)[:, None]
-        moved = np.swapaxes(moved, 0, 1).reshape(len(group.unknowns), -1)
-        gram[np.ix_(group.unknowns, group.unknowns)] += moved @ moved.T
+        scaled_forms = scale[:, None] @ group.forms @ _transposed(scale)[:, None]
+        scaled_forms = np.swapaxes(scaled_forms, 0, 1).reshape(len(group.unknowns), -1)
+        gram[np.ix_(group.unknowns, group.unknowns)] += scaled_forms @ scaled_forms.T
         W.append(scale)
         d.append(entries)
-        scaled.append(moved)
+        scaled.append(scaled_forms)
     inverse = np.linalg.inv(np.linalg.cholesky(gram))
 
     def direction(target: list[Array]) -> tuple[Array, list[Array], list[Array]]:
         """Return the changes of y, X and Z; those of X and Z add up to the target."""
         force = residual.copy()
-        for group, moved, part in zip(groups, scaled, target, strict=True):
-            force[group.unknowns] += moved @ part.ravel()
+        for group, scaled_forms, part in zip(groups, scaled, target, strict=True):
+            force[group.unknowns] += scaled_forms @ part.ravel()
         dy = inverse.T @ (inverse @ force)
         dX = [
             (dy[group.unknowns] @ moved).reshape(part.shape)
@@ -142,10 +144,10 @@ def _step(
     _, dX, dZ = direction([-own for own in D])
     first, second = _farthest(d, dX, 1.0), _farthest(d, dZ, 1.0)
     gap, size = sum(float((own * own).sum()) for own in d), sum(own.size for own in d)
-    reached = sum(
+    predicted_gap = sum(
         float(((a + first * b) * (a + second * c)).sum()) for a, b, c in zip(D, dX, dZ, strict=True)
     )
-    center = max(reached / gap, 0.0) ** 3 * gap / size
+    center = max(predicted_gap / gap, 0.0) ** 3 * gap / size
     target = [
         center / own[..., None] * np.eye(own.shape[-1])
         - (b @ c + c @ b) / (own[..., None] + own[..., None, :])
@@ -153,9 +155,9 @@ def _step(
         for own, a, b, c in zip(d, D, dX, dZ, strict=True)
     ]
     dy, dX, dZ = direction(target)
-    primal, back = _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE)
-    lacks = (1 - back) * float(np.abs(residual).max())
-    dZ = [back * (_transposed(own) @ part @ own) for own, part in zip(W, dZ, strict=True)]
+    primal, dual_step = _farthest(d, dX, STEP_SHARE), _farthest(d, dZ, STEP_SHARE)
+    lacks = (1 - dual_step) * float(np.abs(residual).max())
+    dZ = [dual_step * (_transposed(own) @ part @ own) for own, part in zip(W, dZ, strict=True)]
     return primal * dy, dZ, lacks
 
 

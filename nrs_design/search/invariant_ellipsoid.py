@@ -32,6 +32,7 @@ from nrs_design.search.one_form import (
     of_roundings,
     plain_steps,
 )
+from nrs_design.search.rates import share_of
 from nrs_design.search.work import Allowance
 
 Array = NDArray[np.float64]
@@ -65,9 +66,14 @@ class Frame:
         pushed = np.linalg.inv(T) @ np.concatenate(columns, axis=2)[: len(system.modes)]
         modes = np.linalg.inv(T) @ to_floats([mode.A for mode in system.modes]) @ T
         rows = to_floats(output.rows)[:, 0] @ T
-        reach, level = reach_and_level(modes, pushed, rows, system.time)
-        found = np.isfinite(T).all() and isfinite(reach) and isfinite(level) and reach * level > 0
-        return cls(reach * T, level) if found else None
+        state_size, level = reach_and_level(modes, pushed, rows, system.time)
+        found = (
+            np.isfinite(T).all()
+            and isfinite(state_size)
+            and isfinite(level)
+            and state_size * level > 0
+        )
+        return cls(state_size * T, level) if found else None
 
 
 def reach_and_level(modes: Array, x: Array, rows: Array, time: Time) -> tuple[float, float]:
@@ -81,12 +87,12 @@ def reach_and_level(modes: Array, x: Array, rows: Array, time: Time) -> tuple[fl
 
         dt = 0.1 / np.maximum(np.abs(np.linalg.eigvals(modes)).max(axis=1), 1e-9)
         modes = expm(modes * dt[:, None, None])
-    reach, level = np.zeros(len(modes)), np.zeros(len(modes))
+    state_size, level = np.zeros(len(modes)), np.zeros(len(modes))
     for _ in range(STEPS):
-        reach += np.linalg.norm(x, axis=(1, 2)) * dt
+        state_size += np.linalg.norm(x, axis=(1, 2)) * dt
         level += np.abs(rows @ x).sum(axis=2).max(axis=1) * dt
         x = modes @ x
-    return float(reach.max()), float(level.max())
+    return float(state_size.max()), float(level.max())
 
 
 @dataclass(frozen=True)
@@ -125,12 +131,12 @@ class BoundProgram:
         T = np.eye(n + 1)
         T[1:, 1:] = frame.T
         disturbed = StepUnits(T, np.ones(len(item.channels) + len(item.roundings)))
-        own = disturbed.balanced(steps)
+        units = disturbed.balanced(steps)
         ends = {
             name: sign * np.array(row.floats()[0]) @ frame.T / frame.level
             for name, row, sign in item.ends(system)
         }
-        program = OneForm.of(steps, own, dict.fromkeys(ends, float(T[-1, -1])))
+        program = OneForm.of(steps, units, dict.fromkeys(ends, float(T[-1, -1])))
         basis, zero = program.basis, np.zeros((n + 1, n + 1))
         one, deflected = zero.copy(), zero.copy()
         one[0, 0], deflected[0, -1], deflected[-1, 0] = 1.0, -T[-1, -1] / 2, -T[-1, -1] / 2
@@ -140,7 +146,7 @@ class BoundProgram:
             constant = zero.copy()
             constant[0, 1:] = constant[1:, 0] = -row / 2
             bounds.append(Constraint(constant, basis, one, {name: deflected}))
-        return cls(program, own, tuple(bounds))
+        return cls(program, units, tuple(bounds))
 
     def solve(
         self, share: float, allowance: Allowance, level: float | None = None
@@ -158,7 +164,7 @@ class BoundProgram:
             found = self.solve(share, allowance)
             return np.inf if found is None else found.last
 
-        return best_share(attempt, largest_share(limit, time))
+        return best_share(attempt, share_of(limit, time))
 
 
 def search_ellipsoid(
@@ -180,9 +186,9 @@ def search_ellipsoid(
     if system.roundings:
         programs.insert(0, BoundProgram.around(system, channels, output, frame, rounding=True))
     names = tuple(channel.name for channel in channels)
-    for own in programs:
+    for bound_program in programs:
         for slack in SLACKS:
-            found = own.solve(share, allowance, best * slack**2)
+            found = bound_program.solve(share, allowance, best * slack**2)
             if found is None:
                 continue
             shares = (found.multipliers[f"{SHARE} {k + 1}"] for k in range(len(channels)))
@@ -190,11 +196,17 @@ def search_ellipsoid(
                 tuple(map(seven_digits, shares)),
                 seven_digits(frame.level * sqrt(best) * slack),
             )
-            for Q, log2, known in found.roundings(own.own.T):
-                lost = tuple(known[name] for name in multiplier_names(system))
+            for Q, log2, known in found.roundings(bound_program.own.T):
+                contact_multipliers = tuple(known[name] for name in multiplier_names(system))
                 yield Candidate(
                     InvariantEllipsoid(
-                        names, output.name, Q, log2, *claimed, lost, of_roundings(known)
+                        names,
+                        output.name,
+                        Q,
+                        log2,
+                        *claimed,
+                        contact_multipliers,
+                        of_roundings(known),
                     )
                 )
     return None
@@ -212,8 +224,8 @@ def search_offset_ellipsoid(
         return OUT_OF_RANGE
     names = tuple(channel.name for channel in channels)
     empty = OffsetEllipsoid(names, output.name, (), 0, (Fraction(1, 2),), Fraction(1))
-    every = replace(empty, roundings=(0,) * len(system.roundings))
-    exact, whole = (BoundProgram.off(item, system, frame) for item in (empty, every))
+    with_roundings = replace(empty, roundings=(0,) * len(system.roundings))
+    exact, whole = (BoundProgram.off(item, system, frame) for item in (empty, with_roundings))
     best, share = exact.best_share(limit, system.time, allowance)
     if not isfinite(best):
         return NO_MARGIN
@@ -222,10 +234,10 @@ def search_offset_ellipsoid(
         if found is None:
             continue
         level = seven_digits(frame.level * best * slack)
-        claim = replace(every, shares=(seven_digits(share),), level=level)
+        claim = replace(with_roundings, shares=(seven_digits(share),), level=level)
         for Q, log2, known in found.roundings(whole.own.T, frame.level):
-            own = tuple(m for name, m in known.items() if not name.startswith(ROUNDING))
-            numbers = replace(claim, multipliers=own, roundings=of_roundings(known))
+            multipliers = tuple(m for name, m in known.items() if not name.startswith(ROUNDING))
+            numbers = replace(claim, multipliers=multipliers, roundings=of_roundings(known))
             yield Candidate(replace(numbers, Q=Q, denominator_log2=log2))
     return None
 
@@ -235,23 +247,18 @@ def seven_digits(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
 
 
-def largest_share(limit: float, time: Time) -> float:
-    """Return the share that no form can beat."""
-    return 2 * limit if time is Time.CONTINUOUS else 1 - limit**2
-
-
 def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, float]:
     """Return the least value found, and the share that gives it.
 
     Values are followed down from the best of usual shares, and then by parabolas through the three
     best: a solver that fails at one of them may be right at another.
     """
-    tried: dict[float, float] = {}
+    values_by_share: dict[float, float] = {}
 
     def value(share: float) -> float:
-        if share not in tried:
-            tried[share] = attempt(share)
-        return tried[share]
+        if share not in values_by_share:
+            values_by_share[share] = attempt(share)
+        return values_by_share[share]
 
     start = min((s * top for s in USUAL), key=value)
     best = start
@@ -261,15 +268,15 @@ def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, fl
         if best != start:
             break
     for _ in range(REFINED if isfinite(value(best)) else 0):
-        shares = sorted(tried)
+        shares = sorted(values_by_share)
         k = shares.index(best)
-        beside = shares[max(k - 1, 0) : k + 2]
-        values = [value(s) for s in beside]
+        neighbours = shares[max(k - 1, 0) : k + 2]
+        values = [value(s) for s in neighbours]
         if len(values) < 3 or not np.isfinite(values).all():
             break
-        curve = np.polyfit(np.log(beside) - np.log(best), values, 2)
+        curve = np.polyfit(np.log(neighbours) - np.log(best), values, 2)
         if not curve[0] > 0:
             break
         value(best * float(np.exp(-curve[1] / (2 * curve[0]))))
-        best = min(tried, key=lambda share: tried[share])
+        best = min(values_by_share, key=lambda share: values_by_share[share])
     return value(best), best

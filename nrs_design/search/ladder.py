@@ -207,36 +207,46 @@ def _refuse(reason: str) -> Search:
     return search
 
 
-def _in(place: str) -> Callable[..., Any]:
+def _load_lazily(place: str) -> Callable[..., Any]:
     """Return a function of a module here, which is loaded when it is first called."""
     module, _, name = place.partition(".")
     return late_function(f"nrs_design.search.{module}", name)
 
 
-TOGETHER, MODES = _in("graphs.search_together"), _in("graphs.search_modes")
-OBSTRUCTION, GRADIENT = _in("obstruction.search_obstruction"), _in("gradient.search_by_gradient")
-AT_VALUES = _in("unstable_value.search_switching_at_values")
+SHARED_FORM, MODES = _load_lazily("graphs.search_together"), _load_lazily("graphs.search_modes")
+OBSTRUCTION, GRADIENT = (
+    _load_lazily("obstruction.search_obstruction"),
+    _load_lazily("gradient.search_by_gradient"),
+)
+CONSTANT_VALUES = _load_lazily("unstable_value.search_switching_at_values")
 # Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
 LADDER: tuple[Rung, ...] = (
     Rung(
         "quadratic for each controller",
         Method.PERIODIC_QUADRATIC,
         Facts.counts_stays,
-        _in("counted_stays.search_stays"),
+        _load_lazily("counted_stays.search_stays"),
         clocked=True,
     ),
     Rung(
         "periodic quadratic",
         Method.PERIODIC_QUADRATIC,
         lambda f: not f.counts_stays(),
-        _in("graphs.search_periodic_quadratic"),
+        _load_lazily("graphs.search_periodic_quadratic"),
         clocked=True,
     ),
-    Rung("rounds", Method.PERIOD, Facts.always, _in("period.search_rounds"), clocked=True),
-    Rung("suspicious modes", None, Facts.is_uniform, _in("unstable_mode.examine_suspicious_modes")),
-    Rung("one state", Method.LMI, Facts.may_share_a_square, _in("graphs.decide_one_state")),
-    Rung("conewise quadratic", Method.CONEWISE_QUADRATIC, Facts.loses_contact, TOGETHER),
-    Rung("quadratic, with roundings", Method.LMI, Facts.rounds, TOGETHER),
+    Rung("rounds", Method.PERIOD, Facts.always, _load_lazily("period.search_rounds"), clocked=True),
+    Rung(
+        "suspicious modes",
+        None,
+        Facts.is_uniform,
+        _load_lazily("unstable_mode.examine_suspicious_modes"),
+    ),
+    Rung(
+        "one state", Method.LMI, Facts.may_share_a_square, _load_lazily("graphs.decide_one_state")
+    ),
+    Rung("conewise quadratic", Method.CONEWISE_QUADRATIC, Facts.loses_contact, SHARED_FORM),
+    Rung("quadratic, with roundings", Method.LMI, Facts.rounds, SHARED_FORM),
     # Before the rungs that assume that contact is kept. That no quadratic function exists is a
     # statement on the matrices in any contact.
     Rung("obstruction in contact", Method.OBSTRUCTION, Facts.may_bounce, OBSTRUCTION),
@@ -244,14 +254,14 @@ LADDER: tuple[Rung, ...] = (
         "conewise mode quadratic",
         Method.CONEWISE_MODE_QUADRATIC,
         lambda f: f.may_bounce() and not f.is_continuous(),
-        _in("graphs.search_conewise_modes"),
+        _load_lazily("graphs.search_conewise_modes"),
     ),
     Rung(
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
         lambda f: f.may_bounce() and f.is_continuous(),
-        _in("graphs.search_conewise_polynomial"),
-        cost=_in("polynomial.conewise_cost"),
+        _load_lazily("graphs.search_conewise_polynomial"),
+        cost=_load_lazily("polynomial.conewise_cost"),
         first=QUICK,
     ),
     # After the proofs that cover the loss of contact, before those for kept contact.
@@ -260,13 +270,13 @@ LADDER: tuple[Rung, ...] = (
             f"{what} with loss of contact",
             Method.PERIOD,
             lambda f: f.system.is_losable,
-            _in("unstable_contact.search_contact"),
+            _load_lazily("unstable_contact.search_contact"),
             clocked=clocked,
             in_kept_contact=False,
         )
         for clocked, what in ((False, "growth"), (True, "rounds"))
     ),
-    Rung("lmi", Method.LMI, Facts.may_share_an_ellipsoid, _in("graphs.search_by_lmi")),
+    Rung("lmi", Method.LMI, Facts.may_share_an_ellipsoid, _load_lazily("graphs.search_by_lmi")),
     Rung(
         "obstruction",
         Method.OBSTRUCTION,
@@ -274,13 +284,18 @@ LADDER: tuple[Rung, ...] = (
         OBSTRUCTION,
     ),
     Rung("gradient", Method.GRADIENT, Facts.may_share_a_function, GRADIENT),
-    Rung("every mode", None, Facts.always, _in("unstable_mode.examine_every_mode")),
-    Rung("constant values", Method.VALUE, Facts.has_values, _in("unstable_value.search_value")),
+    Rung("every mode", None, Facts.always, _load_lazily("unstable_mode.examine_every_mode")),
+    Rung(
+        "constant values",
+        Method.VALUE,
+        Facts.has_values,
+        _load_lazily("unstable_value.search_value"),
+    ),
     Rung(
         "constants quadratic",
         Method.CONSTANTS_QUADRATIC,
         Facts.has_values,
-        _in("constants_quadratic.search_constants_quadratic"),
+        _load_lazily("constants_quadratic.search_constants_quadratic"),
     ),
     Rung(
         "mode quadratic",
@@ -296,22 +311,22 @@ LADDER: tuple[Rung, ...] = (
         "quadratic with a memory",
         Method.MEMORY_QUADRATIC,
         Facts.is_of_words,
-        _in("memory.search_memory"),
-        lengths=_in("memory.quadratic_memories"),
+        _load_lazily("memory.search_memory"),
+        lengths=_load_lazily("memory.quadratic_memories"),
         first=QUICK,
     ),
     Rung(
         "words in the norms of forms",
         Method.PERIOD,
         Facts.is_of_words,
-        _in("memory.search_extremal_words"),
+        _load_lazily("memory.search_extremal_words"),
     ),
     Rung(
         "quartic with a memory",
         Method.MEMORY_POLYNOMIAL,
         Facts.is_of_words,
-        _in("memory.search_quartic_memory"),
-        lengths=_in("memory.quartic_memories"),
+        _load_lazily("memory.search_quartic_memory"),
+        lengths=_load_lazily("memory.quartic_memories"),
         degree=4,
         first=QUICK,
     ),
@@ -319,24 +334,24 @@ LADDER: tuple[Rung, ...] = (
         "mixture",
         Method.MIXTURE,
         lambda f: f.system.switching.is_arbitrary and f.is_continuous(),
-        _in("unstable_value.search_mixture"),
+        _load_lazily("unstable_value.search_mixture"),
     ),
     Rung(
         "polynomial",
         Method.POLYNOMIAL,
         Facts.may_share_a_function,
-        _in("graphs.search_polynomial"),
-        cost=_in("polynomial.family_cost"),
+        _load_lazily("graphs.search_polynomial"),
+        cost=_load_lazily("polynomial.family_cost"),
     ),
     Rung(
         "mode polynomial",
         Method.MODE_POLYNOMIAL,
         lambda f: f.has_rules() and not f.is_continuous(),
         MODES,
-        cost=_in("polynomial.functions_cost"),
+        cost=_load_lazily("polynomial.functions_cost"),
     ),
-    Rung("period", Method.PERIOD, Facts.is_uniform, _in("period.search_period")),
-    Rung("switching at constant values", Method.VALUE, Facts.has_values, AT_VALUES),
+    Rung("period", Method.PERIOD, Facts.is_uniform, _load_lazily("period.search_period")),
+    Rung("switching at constant values", Method.VALUE, Facts.has_values, CONSTANT_VALUES),
 )
 
 

@@ -123,8 +123,8 @@ class MarginAxis:
             if idle <= 0 or any(n <= number and self.is_refuted(n) for n in self.found):
                 break
             if not self._makes_system(number):
-                inside = max(n for n, one in self.found.items() if not isinstance(one, str))
-                self.at(self._sharpened(inside, number, self._makes_system, steps))
+                accepted = max(n for n, one in self.found.items() if not isinstance(one, str))
+                self.at(self._sharpened(accepted, number, self._makes_system, steps))
                 break
             idle -= not self.is_proved(number)
         proved = self._end(self.is_proved, 1, steps)
@@ -144,22 +144,26 @@ class MarginAxis:
     def _end(self, accepts: Callable[[Fraction], bool], sign: int, steps: int) -> Fraction | None:
         """Return the largest number of a kind, or with the sign -1 the smallest, by bisection."""
         best = max(filter(accepts, self.found), key=lambda number: sign * number, default=None)
-        beyond = (n for n in self.found if best is not None and sign * n > sign * best)
-        other = min(beyond, key=lambda number: sign * number, default=None)
-        if best is None or other is None:
+        rejected = (n for n in self.found if best is not None and sign * n > sign * best)
+        neighbour = min(rejected, key=lambda number: sign * number, default=None)
+        if best is None or neighbour is None:
             return best
-        return self._sharpened(best, other, accepts, steps)
+        return self._sharpened(best, neighbour, accepts, steps)
 
     def _sharpened(
-        self, accepted: Fraction, other: Fraction, accepts: Callable[[Fraction], bool], steps: int
+        self,
+        accepted: Fraction,
+        rejected: Fraction,
+        accepts: Callable[[Fraction], bool],
+        steps: int,
     ) -> Fraction:
         for _ in range(steps):
-            middle = (accepted + other) / 2
+            middle = (accepted + rejected) / 2
             if self.whole:
                 middle = Fraction(int(middle))
-            if middle in (accepted, other):
+            if middle in (accepted, rejected):
                 break
-            accepted, other = (middle, other) if accepts(middle) else (accepted, middle)
+            accepted, rejected = (middle, rejected) if accepts(middle) else (accepted, middle)
         return accepted
 
     def _assembled(self, number: Fraction) -> SwitchedSystem | str:
@@ -177,18 +181,18 @@ class MarginAxis:
     def _why_none(self) -> str:
         """Name the largest number that was tried without a refutation, and why the search ended."""
         longest = max((n for n, one in self.found.items() if not isinstance(one, str)))
-        beyond = min((n for n in self.found if n > longest), default=None)
-        why = "the search ends there"
-        if beyond is not None:
-            why = f"what is beyond makes no system ({self.found[beyond]})"
-        return f"none of up to {self._text(longest)} is refuted: {why}"
+        smallest_failure = min((n for n in self.found if n > longest), default=None)
+        reason = "the search ends there"
+        if smallest_failure is not None:
+            reason = f"what is beyond makes no system ({self.found[smallest_failure]})"
+        return f"none of up to {self._text(longest)} is refuted: {reason}"
 
     def _known(self) -> str:
         proved = [n for n in self.found if self.is_proved(n)]
         refuted = [n for n in self.found if self.is_refuted(n)]
-        known = [f"proved: {self._text(max(proved))}"] if proved else []
-        known += [f"refuted: {self._text(min(refuted))}"] if refuted else []
-        return f" ({', '.join(known)})" if known else ""
+        parts = [f"proved: {self._text(max(proved))}"] if proved else []
+        parts += [f"refuted: {self._text(min(refuted))}"] if refuted else []
+        return f" ({', '.join(parts)})" if parts else ""
 
     def _text(self, number: Fraction) -> str:
         return nearly(abs(number), self.unit)
@@ -209,9 +213,11 @@ def find_margin(
     one = Fraction(1)
     if known is None:
         assemble(Fraction(0))  # Raises what is wrong, and where.
-    at_first: dict[Fraction, Certification | str] = {} if known is None else {one: known}
-    axis = MarginAxis(assemble, certify, progress, "box scaled by", found=at_first)
-    return axis.bracket(one, [Fraction(0)], _doubled(one, Fraction(LARGEST_SCALE)), idle=IDLE)
+    initial_results: dict[Fraction, Certification | str] = {} if known is None else {one: known}
+    axis = MarginAxis(assemble, certify, progress, "box scaled by", found=initial_results)
+    return axis.bracket(
+        one, [Fraction(0)], _double_up_to_largest(one, Fraction(LARGEST_SCALE)), idle=IDLE
+    )
 
 
 def find_longest_delay(
@@ -229,17 +235,17 @@ def find_longest_delay(
     delay that is unstable by itself refutes all ranges that reach it: `unstable_in`, a quick test,
     tells in which contact, empty for any. `known` is on the declared ones.
     """
-    declared, longest = map(Fraction, delays[1:])
+    longest_declared, longest = map(Fraction, delays[1:])
     axis = MarginAxis(
         lambda n: assemble(delays[0], int(n)),
         certify,
         progress,
         "delay",
         whole=True,
-        found={declared: known},
+        found={longest_declared: known},
     )
     down = (Fraction(n) for n in range(delays[1] - 1, delays[0] - 1, -1))
-    found = axis.bracket(declared, down, _doubled(declared, longest))
+    found = axis.bracket(longest_declared, down, _double_up_to_largest(longest_declared, longest))
     if found.refuted is not None:
         return found
 
@@ -250,11 +256,11 @@ def find_longest_delay(
         except NrsDesignError:
             return None  # What makes no loop shows nothing.
 
-    beyond = range(delays[2], FARTHEST_DELAY + 1)
-    first = bisect_left(beyond, True, key=lambda delay: where(delay) is not None)
-    if first < len(beyond):
-        contact = where(beyond[first]) or ""
-        return replace(found, refuted=Fraction(beyond[first]), refuted_in=contact, end="")
+    longer_delays = range(delays[2], FARTHEST_DELAY + 1)
+    first = bisect_left(longer_delays, True, key=lambda delay: where(delay) is not None)
+    if first < len(longer_delays):
+        contact = where(longer_delays[first]) or ""
+        return replace(found, refuted=Fraction(longer_delays[first]), refuted_in=contact, end="")
     return replace(found, end=f"{found.end}, nor is one of up to {FARTHEST_DELAY} by itself")
 
 
@@ -292,8 +298,8 @@ def find_shortest_dwell(
         return replace(system, switching=switching, saturation=None)
 
     longest, dwell = Fraction(LONGEST_DWELL), _common_dwell(system, known)
-    at_first: dict[Fraction, Certification | str] = {} if dwell is None else {-dwell: known}
-    axis = MarginAxis(assemble, certify, progress, "dwell time", "s", found=at_first)
+    initial_results: dict[Fraction, Certification | str] = {} if dwell is None else {-dwell: known}
+    axis = MarginAxis(assemble, certify, progress, "dwell time", "s", found=initial_results)
     free = axis.at(Fraction(0))
     assert not isinstance(free, str), "it is the system itself"
     if axis.is_refuted(Fraction(0)) and _has_unstable_mode(free):
@@ -308,10 +314,10 @@ def find_shortest_dwell(
     return replace(found, proved=proved, refuted=refuted)
 
 
-def _doubled(start: Fraction, most: Fraction) -> Iterable[Fraction]:
+def _double_up_to_largest(start: Fraction, largest: Fraction) -> Iterable[Fraction]:
     """Yield the doubles of a start up to a largest number."""
-    while start < most:
-        start = min(2 * start or Fraction(1), most)
+    while start < largest:
+        start = min(2 * start or Fraction(1), largest)
         yield start
 
 

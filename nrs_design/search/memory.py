@@ -48,7 +48,7 @@ Array = NDArray[np.float64]
 # Most steps of a sequence of modes, and work of a program whose forms give the norms.
 LONGEST, WORK = 400, 0.1
 # Resolution of the least growth of forms, relative to its distance from the growth of a word.
-SHARE, NEAR = 0.2, 1e-4
+SHARE, GROWTH_TOLERANCE = 0.2, 1e-4
 HALVINGS = 12
 # Upper bounds of the growth that are tried in turn.
 BOUNDS = (1.05, 1.5, 6.0)
@@ -107,8 +107,8 @@ def draw_memory(system: SwitchedSystem, length: int, degree: int = 1) -> Drawing
         edges=arcs,
         stays=None if free else Stays(left_modes(system)),
     )
-    own = balance(np.array([mode.A.floats() for mode in system.modes]))
-    coordinates = (lifted_coordinates(own, degree),) * len(found)
+    exponents = balance(np.array([mode.A.floats() for mode in system.modes]))
+    coordinates = (lifted_coordinates(exponents, degree),) * len(found)
     return Drawing(system, graph, tuple(range(len(found))), coordinates)
 
 
@@ -173,7 +173,7 @@ def least_growth(
         return None
     best, bottom = (high, solution), low
     for _ in range(HALVINGS):
-        if best[0] - bottom <= max(SHARE * (best[0] - low), NEAR * low):
+        if best[0] - bottom <= max(SHARE * (best[0] - low), GROWTH_TOLERANCE * low):
             break
         middle = (best[0] + bottom) / 2
         found = program.solve(middle, allowance)
@@ -212,10 +212,12 @@ def words_in_norms(
     order = np.argsort([a for a, *_ in rows], kind="stable")
     sources, targets, edges = np.array(rows)[order].T
     maps = np.array([program.every[k].M for k in order])
-    none = np.zeros(len(rows), dtype=np.int64)
-    lifted = StepGraph((), sources, targets, none, none, maps, len(places), has_choice=False)
+    no_modes = np.zeros(len(rows), dtype=np.int64)
+    memory_graph = StepGraph(
+        (), sources, targets, no_modes, no_modes, maps, len(places), has_choice=False
+    )
     T = np.array([round_coordinates(Q) for Q in solution.forms])
-    for word, growth in best_words(lifted, allowance, floor, T, LONGEST):
+    for word, growth in best_words(memory_graph, allowance, floor, T, LONGEST):
         yield tuple(int(edges[k]) for k in word), growth
 
 

@@ -41,8 +41,8 @@ class StepUnits:
 
     def rows(self, rows: Array, states: int) -> Array:
         """Return what rows over state, disturbances and errors are in these coordinates."""
-        moved = rows[..., :states] @ self.T[:states, :states]
-        return np.concatenate([moved, rows[..., states:] * self.others], axis=-1)
+        state_columns = rows[..., :states] @ self.T[:states, :states]
+        return np.concatenate([state_columns, rows[..., states:] * self.others], axis=-1)
 
     def balanced(self, steps: Sequence[Step]) -> StepUnits:
         """Return units of errors in which gains from and to the state are equal."""
@@ -58,24 +58,24 @@ class StepUnits:
         return replace(self, others=others)
 
 
-def _inequality(step: Step, own: StepUnits) -> Inequality:
+def _inequality(step: Step, units: StepUnits) -> Inequality:
     """Return the inequality of a step, with the forms of all facts.
 
     A disturbance with a weight has the fact that it is at most one.
     """
     raw, n, after = FloatStep.of(step), step.states, len(step.rows)
-    M = np.asarray(np.linalg.inv(own.T[:after, :after]) @ own.rows(raw.M, n), dtype=float)
+    M = np.asarray(np.linalg.inv(units.T[:after, :after]) @ units.rows(raw.M, n), dtype=float)
     unit, facts = np.eye(M.shape[1]), dict[str, Array]()
-    last = own.rows(unit[n - 1], n)
+    last = units.rows(unit[n - 1], n)
     for k, _ in enumerate(filter(None, step.weights)):
         facts[f"{SHARE} {k + 1}"] = np.outer(unit[n + k], unit[n + k])
     for name, c in raw.crossings:
-        facts[name] = _both(last, own.rows(c, n))
+        facts[name] = _symmetric_product(last, units.rows(c, n))
     for name, left, right in raw.products:
-        facts[name] = -_both(own.rows(left, n), own.rows(right, n))
+        facts[name] = -_symmetric_product(units.rows(left, n), units.rows(right, n))
     errors = []
     for name, i, q in raw.errors:
-        row, e = own.rows(q, n), own.rows(unit[i], n)
+        row, e = units.rows(q, n), units.rows(unit[i], n)
         facts[name] = np.outer(e, e) - np.outer(row, row)
         errors.append(Error((name, None), M[:, i], row))
     forms = tuple(((name, None), form) for name, form in facts.items())
@@ -83,8 +83,8 @@ def _inequality(step: Step, own: StepUnits) -> Inequality:
     return Inequality(0, kept, 0, left_over, M, forms, tuple(errors), step.is_flow, 0.0, True)
 
 
-def _both(left: Array, right: Array) -> Array:
-    return np.outer(left, right) + np.outer(right, left)
+def _symmetric_product(left_row: Array, right_row: Array) -> Array:
+    return np.outer(left_row, right_row) + np.outer(right_row, left_row)
 
 
 def plain_steps(
@@ -143,10 +143,10 @@ class FormSolution:
         size = np.abs(np.diag(Q))
         # In these units the diagonal is about one.
         shifts = -np.round(np.log2(np.where(size > 0, size, 1.0)) / 2).astype(np.int64)
-        near = np.ldexp(Q, shifts[:, None] + shifts)
+        scaled_form = np.ldexp(Q, shifts[:, None] + shifts)
         values = scale * np.array([*self.multipliers.values()])
         for bits in BITS:
-            rows, log2 = unscale(near, shifts, bits)
+            rows, log2 = unscale(scaled_form, shifts, bits)
             known = zip(self.multipliers, numerators(values, log2), strict=True)
             yield rows, log2, dict(known)
 
@@ -162,25 +162,30 @@ class OneForm:
 
     @classmethod
     def of(
-        cls, steps: Iterable[Step], own: StepUnits, more: Mapping[str, float] | None = None
+        cls, steps: Iterable[Step], units: StepUnits, additional: Mapping[str, float] | None = None
     ) -> OneForm:
         """Take the conditions of steps, and `more` multipliers with their scales."""
-        edges = [_inequality(step, own) for step in steps]
+        edges = [_inequality(step, units) for step in steps]
         # Like steps have facts of other names.
         unnamed = [
             replace(edge, facts=tuple((("", k), form) for k, (_, form) in enumerate(edge.facts)))
             for edge in edges
         ]
         _, found = distinct(unnamed)
-        kept = {k: edges[found.index(k)] for k in sorted({*found})}
-        stands, scales = dict[str, str](), dict[str, float]()
+        representatives = {k: edges[found.index(k)] for k in sorted({*found})}
+        equals, scales = dict[str, str](), dict[str, float]()
         for edge, k in zip(edges, found, strict=True):
-            for ((name, _), _), ((other, _), form) in zip(edge.facts, kept[k].facts, strict=True):
-                stands.setdefault(name, other)
+            for ((name, _), _), ((other, _), form) in zip(
+                edge.facts, representatives[k].facts, strict=True
+            ):
+                equals.setdefault(name, other)
                 scales[other] = max(scales.get(other, 0.0), float(np.abs(form).max()))
-        scales = {name: scale or 1.0 for name, scale in scales.items()} | dict(more or {})
+        scales = {name: scale or 1.0 for name, scale in scales.items()} | dict(additional or {})
         return cls(
-            len(own.T), tuple(kept.values()), stands | {name: name for name in more or {}}, scales
+            len(units.T),
+            tuple(representatives.values()),
+            equals | {name: name for name in additional or {}},
+            scales,
         )
 
     @property
@@ -205,8 +210,8 @@ class OneForm:
             return place[name], packed_columns(form[None] / self.scales[name])
 
         for edge in self.conditions:
-            keeps, counts = (1.0, share) if edge.is_flow else (1 - share, 1.0)
-            images = edge.images((0,), (self.order,), keeps, counts)
+            weight_before, weight_after = (1.0, share) if edge.is_flow else (1 - share, 1.0)
+            images = edge.images((0,), (self.order,), weight_before, weight_after)
             images += [of_fact(name, form) for (name, _), form in edge.facts]
             spared = np.eye(edge.size) * (level is not None)
             images.append((last, packed_columns(-spared[None])))
@@ -228,12 +233,12 @@ class OneForm:
             program.add(0 * one, [(column, one)])
         if level is not None:
             program.add(one, [(last, -one)])
-        reached = program.maximize(allowance)
+        maximum = program.maximize(allowance)
         # The last unknown is the margin, or the negative level.
         sign = -1 if level is None else 1
-        if reached is None or sign * reached.x[-1] <= 0:
+        if maximum is None or sign * maximum.x[-1] <= 0:
             return None
-        x = reached.x
+        x = maximum.x
         found = {name: float(x[place[name]] / scale) for name, scale in self.scales.items()}
         Q = np.asarray(np.tensordot(x[: len(basis)], basis, axes=1))
         multipliers = {name: found.get(other, 0.0) for name, other in self.stands.items()}

@@ -20,7 +20,7 @@ from nrs_design.search.drawing import SAMPLES
 from nrs_design.search.sdp import pack, program_cost, unpack
 from nrs_design.search.work import Cost
 
-HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
+SIZE_LIMITS = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
 # Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
 PER_CHECK = 6e-5
 Array = NDArray[np.float64]
@@ -58,18 +58,18 @@ def family_cost(system: SwitchedSystem, degree: int, free: int = 0) -> tuple[Cos
     """Predict the cost of a form of degree 2d for all modes, and some of free motion."""
     n, modes = system.order, len(system.modes)
     (order, own, forms), (inner, _, flying) = (form_sizes(k, degree) for k in (n, n - 1))
-    shared = own + 1
-    cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
-    cones += [(inner, shared + flying)] * free
-    unknowns = shared + modes * forms + free * flying
-    return program_cost(unknowns, shared, cones), f"a program in {order} monomials"
+    shared_unknowns = own + 1
+    cones = [(order, shared_unknowns)] * 2 + [(order, shared_unknowns + forms)] * modes
+    cones += [(inner, shared_unknowns + flying)] * free
+    unknowns = shared_unknowns + modes * forms + free * flying
+    return program_cost(unknowns, shared_unknowns, cones), f"a program in {order} monomials"
 
 
 def form_sizes(variables: int, degree: int) -> tuple[int, int, int]:
     """Return the numbers of monomials, of forms of them, and of forms that vanish."""
     order = comb(variables + degree - 1, degree)
-    own = order * (order + 1) // 2
-    return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)
+    entries = order * (order + 1) // 2
+    return order, entries, entries - comb(variables + 2 * degree - 1, 2 * degree)
 
 
 def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
@@ -81,10 +81,10 @@ def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
 def graph_cost(variables: int, degree: int, nodes: int, edges: int) -> tuple[Cost, str]:
     """Predict what forms of degree 2d take; say for what."""
     order, own, forms = form_sizes(variables, degree)
-    shared, cones = own * nodes + 1, [(order, own)] * (2 * nodes)
+    shared_unknowns, cones = own * nodes + 1, [(order, own)] * (2 * nodes)
     cones += [(order, 2 * own + forms)] * edges
-    what = f"a program with {len(cones)} blocks of order {order}"
-    return program_cost(shared + forms * edges, shared, cones), what
+    description = f"a program with {len(cones)} blocks of order {order}"
+    return program_cost(shared_unknowns + forms * edges, shared_unknowns, cones), description
 
 
 def work_of_checks(system: SwitchedSystem, degree: int) -> float:
@@ -136,10 +136,10 @@ def vanishing_basis(variables: int, degree: int, scaling: Exponents) -> Array:
     return unpack(np.linalg.qr(pack(np.array(forms)).T)[0].T, size)
 
 
-def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:
+def _difference(first_pair: Pair, second_pair: Pair, scaling: Exponents) -> Array:
     """Return the form ``z_i z_j - z_k z_l`` of two pairs with the same product, scaled."""
     form = np.zeros((len(scaling), len(scaling)))
-    for (i, j), sign in ((one, 1.0), (other, -1.0)):
+    for (i, j), sign in ((first_pair, 1.0), (second_pair, -1.0)):
         form[i, j] += sign / 2
         form[j, i] += sign / 2
     return np.asarray(np.ldexp(form, -scaling[:, None] - scaling[None, :]))

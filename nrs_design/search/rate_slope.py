@@ -23,8 +23,9 @@ from nrs_design.search.drawing import Inequality, Solution
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import DualSolution, FormsProgram
 from nrs_design.search.graphs import draw_together
-from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame, largest_share
+from nrs_design.search.invariant_ellipsoid import BoundProgram, Frame
 from nrs_design.search.ladder import Facts
+from nrs_design.search.rates import share_of
 from nrs_design.search.work import Allowance
 
 # Bracket of a rate, relative to its size; step of a difference, relative to the rate.
@@ -36,11 +37,11 @@ FURTHER = 1.5
 # Modes are made to decay at least as a contraction to this share.
 CALM = 0.999
 # Distances below the best rate at which slopes are taken, relative to the rate.
-BELOW = (0.0, 1e-4, 1e-3, 1e-2)
+DISTANCES = (0.0, 1e-4, 1e-3, 1e-2)
 # Growth is looked at up to this many times the decay of the slowest mode.
 FASTEST_GROWTH = 64.0
 # Shares relative to the best share of a system nearby.
-BESIDE = (0.6, 1.0, 1.6)
+SHARE_FACTORS = (0.6, 1.0, 1.6)
 
 
 @dataclass(frozen=True)
@@ -56,9 +57,9 @@ class RateSlope:
     def change(self, system: SwitchedSystem) -> float:
         """Return the change of the rate for a system nearby, in first order, 1/s."""
         edges = self._program.edges_at(system)
-        moved = _weighted(self._program, edges, self._dual, self._at)
-        own = _weighted(self._program, self._program.edges, self._dual, self._at)
-        return (own - moved) / self._per_rate
+        nearby_sum = _weighted(self._program, edges, self._dual, self._at)
+        sum_here = _weighted(self._program, self._program.edges, self._dual, self._at)
+        return (sum_here - nearby_sum) / self._per_rate
 
 
 def may_have_slope(system: SwitchedSystem) -> bool:
@@ -91,12 +92,12 @@ def rate_slope(
         if best is None:
             return None
         # The slope of a vanishing margin is noise.
-        for below in BELOW:
-            at = _counted(best - below * max(abs(best), resolution), program)
-            dual = program.solve_dual(at, allowance)
-            per_rate = 0.0 if dual is None else _per_rate(program, dual, at)
+        for distance in DISTANCES:
+            shifted_rate = _program_rate(best - distance * max(abs(best), resolution), program)
+            dual = program.solve_dual(shifted_rate, allowance)
+            per_rate = 0.0 if dual is None else _per_rate(program, dual, shifted_rate)
             if dual is not None and per_rate < 0:
-                return RateSlope(best, program, dual, at, per_rate)
+                return RateSlope(best, program, dual, shifted_rate, per_rate)
     return None
 
 
@@ -118,11 +119,13 @@ def _calmed(family: Family) -> NDArray[np.float64]:
     modes, limit = family.matrices, family.limit
     if family.system.time is Time.DISCRETE:
         return modes if limit < CALM else np.asarray(modes * (CALM / limit))
-    least = (1 - CALM) * float(np.abs(np.linalg.eigvals(modes)).max())
-    return modes if limit > least else np.asarray(modes - (least - limit) * np.eye(modes.shape[1]))
+    slowest = (1 - CALM) * float(np.abs(np.linalg.eigvals(modes)).max())
+    return (
+        modes if limit > slowest else np.asarray(modes - (slowest - limit) * np.eye(modes.shape[1]))
+    )
 
 
-def _counted(rate: float, program: FormsProgram) -> float:
+def _program_rate(rate: float, program: FormsProgram) -> float:
     """Return a rate in 1/s as the program counts it."""
     if program.time is Time.CONTINUOUS:
         return rate
@@ -149,10 +152,10 @@ def _best(
     size = max(abs(start), abs(fastest) / 16)
     low, high, step, rate = None, None, size / (4 if guess is None else 32), start
     while abs(rate) <= FASTEST_GROWTH * max(abs(fastest), abs(start)):
-        solution = program.solve(_counted(rate, program), allowance)
-        shown = -inf if solution is None else _shown(program, solution)
-        if shown > rate:
-            low, step = shown, min(FURTHER * (shown - rate), 2 * step)
+        solution = program.solve(_program_rate(rate, program), allowance)
+        own_rate = -inf if solution is None else _shown_rate(program, solution)
+        if own_rate > rate:
+            low, step = own_rate, min(FURTHER * (own_rate - rate), 2 * step)
         else:  # What is solved, and does not show the rate itself, is a margin of the solver's.
             high = rate
         if low is None:
@@ -170,7 +173,7 @@ def _best(
     return low
 
 
-def _shown(program: FormsProgram, solution: Solution) -> float:
+def _shown_rate(program: FormsProgram, solution: Solution) -> float:
     """Return the rate in 1/s that forms show; none where they are singular in floating point."""
     try:
         rate = program.own_rate(solution)
@@ -180,21 +183,21 @@ def _shown(program: FormsProgram, solution: Solution) -> float:
 
 
 def _weighted(
-    program: FormsProgram, edges: Sequence[Inequality], dual: DualSolution, at: float
+    program: FormsProgram, edges: Sequence[Inequality], dual: DualSolution, rate: float
 ) -> float:
     """Return the sum of ``trace(W F)`` of some edges, with F as the program states it."""
-    factors, total = program.factors(at), 0.0
+    factors, total = program.factors(rate), 0.0
     for k, W in dual.duals.items():
         edge, solution = edges[k], dual.solution
-        form = program.decrease(edge, solution, solution.vanishing[k], at)
+        form = program.decrease(edge, solution, solution.vanishing[k], rate)
         total += float(np.sum(W * (form if edge.is_flow else factors[k] * form)))
     return total
 
 
-def _per_rate(program: FormsProgram, dual: DualSolution, at: float) -> float:
+def _per_rate(program: FormsProgram, dual: DualSolution, rate: float) -> float:
     """Return the change of the margin for 1/s more."""
-    step = DIFFERENCE * max(abs(at), RESOLUTION)
-    ends = (_weighted(program, program.edges, dual, at + side) for side in (-step, step))
+    step = DIFFERENCE * max(abs(rate), RESOLUTION)
+    ends = (_weighted(program, program.edges, dual, rate + side) for side in (-step, step))
     lower, upper = ends
     change = (upper - lower) / (2 * step)
     return change if program.time is Time.CONTINUOUS else -_period(program) * change
@@ -236,15 +239,15 @@ def force_slope(
             return None
         program = BoundProgram.around(system, system.channels, output, frame)
         limit = Family.of(system).limit
-        top, tried = largest_share(limit, system.time), {}
-        for near in (share * factor for factor in BESIDE if share is not None):
-            if near < top and (found := program.solve(near, allowance)) is not None:
-                tried[near] = found.last
-        best = min(tried, key=lambda one: tried[one], default=None)
+        top, levels = share_of(limit, system.time), {}
+        for nearby_share in (share * factor for factor in SHARE_FACTORS if share is not None):
+            if nearby_share < top and (found := program.solve(nearby_share, allowance)) is not None:
+                levels[nearby_share] = found.last
+        best = min(levels, key=lambda one: levels[one], default=None)
         if best is None:
-            least, best = program.best_share(limit, system.time, allowance)
+            least_level, best = program.best_share(limit, system.time, allowance)
         else:
-            least = tried[best]
-    if not isfinite(least):
+            least_level = levels[best]
+    if not isfinite(least_level):
         return None
-    return ForceSlope(frame.level * sqrt(least), best, output, frame, allowance)
+    return ForceSlope(frame.level * sqrt(least_level), best, output, frame, allowance)

@@ -33,9 +33,9 @@ RATE_BITS = 16
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
 # Distance of the last position above the largest feasible one, relative to it.
-BEYOND = 2.0**-10
+OVERSHOOT = 2.0**-10
 # Few roundings with errors: more digits at once, as every check takes longer.
-WITH_ERRORS = (24, 32, 40, 50, 60)
+ERROR_BITS = (24, 32, 40, 50, 60)
 
 
 def rate_at(position: float, limit: float, time: Time) -> float:
@@ -46,6 +46,11 @@ def rate_at(position: float, limit: float, time: Time) -> float:
 def position_of(rate: float, limit: float, time: Time) -> float:
     """Return the position of a rate: the inverse of `rate_at`."""
     return rate / limit if time is Time.CONTINUOUS else (1 - rate) / (1 - limit)
+
+
+def share_of(rate: float, time: Time) -> float:
+    """Return the relative decrease of a quadratic form at a rate, in 1/s or per step."""
+    return 2 * rate if time is Time.CONTINUOUS else 1 - rate**2
 
 
 def claims(
@@ -99,12 +104,12 @@ def round_matrix(
 
     No shift s is negative; bits may be. An OverflowError beyond the range of floating point.
     """
-    rounded = np.ldexp(M, bits)
-    if not np.isfinite(rounded).all():
+    scaled = np.ldexp(M, bits)
+    if not np.isfinite(scaled).all():
         raise OverflowError("a form beyond the range of floating point")
     return tuple(
         tuple(round(float(v)) << int(si + sj) for v, sj in zip(row, shifts, strict=True))
-        for row, si in zip(rounded, shifts, strict=True)
+        for row, si in zip(scaled, shifts, strict=True)
     )
 
 
@@ -198,7 +203,7 @@ def propose(
         """
         position = position_of(float(claim), limit, time)
         known = sorted(found, key=lambda one: one[0], reverse=True)
-        better = [solution for own, solution in known[:1] if own > position]
+        better = [solution for position_shown, solution in known[:1] if position_shown > position]
         yield from () if covered else better
         if (solved := program.solve(float(claim), part)) is not None:
             yield solved
@@ -208,7 +213,7 @@ def propose(
     if family.optimize_rate or rates.always:
         best = bisect_position(shown, rates.resolution, rates.smallest)
     for covered in coverings:
-        bits = WITH_ERRORS if covered else rates.bits
+        bits = ERROR_BITS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
                 for solution in solutions(claim, covered=covered):
@@ -256,7 +261,7 @@ def bisect_position(
         if high - low <= max(resolution * high, smallest):
             if is_last or not low:
                 return low
-            position, is_last = min(low * (1 + BEYOND), 1.0), True
+            position, is_last = min(low * (1 + OVERSHOOT), 1.0), True
         try:
             found = shown(position)
         except NotAffordableError:

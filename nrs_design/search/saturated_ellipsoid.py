@@ -40,7 +40,7 @@ from nrs_design.search.one_form import (
     of_roundings,
     plain_steps,
 )
-from nrs_design.search.rates import position_of, rate_at, round_rate
+from nrs_design.search.rates import position_of, rate_at, round_rate, share_of
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis
 from nrs_design.search.work import Allowance
 
@@ -50,7 +50,7 @@ H_DIGITS = 40
 # The slowest decay that counts, as a share of the fastest there is; what is rounded needs room.
 SLOWEST = {Time.CONTINUOUS: 1e-3, Time.DISCRETE: 0.02}
 # Size of a start relative to the largest one, at which there is hardly any decay.
-BELOW = 0.99
+START_SHARE = 0.99
 # A start just inside of a region leaves nothing for rounding.
 ENOUGH = 0.999
 # Distances of H from the unsaturated signals, the farthest first.
@@ -100,8 +100,8 @@ class SaturatingLoop:
         starts = to_floats(saturation.start.states)[:, :, 0]
         groups = (0,) * len(A)
         if system.time is Time.DISCRETE:
-            same = nearly_same(np.concatenate([row[:, :n] for row in rows], axis=1))
-            groups = tuple(sorted({*same}).index(k) for k in same)
+            equal_rows = nearly_same(np.concatenate([row[:, :n] for row in rows], axis=1))
+            groups = tuple(sorted({*equal_rows}).index(k) for k in equal_rows)
         return cls(system.time, A, len(free), columns, tuple(rows), starts, groups, allowance)
 
     @property
@@ -156,14 +156,14 @@ class SaturatingLoop:
         """
         n, linear, count = self.A.shape[1], self.linear, len(self.rows)
         for k, replaced in product(range(len(self.A)), product((False, True), repeat=count)):
-            B, taken = self.A[k] @ S, list[Array]()
-            own = Y[:, self.groups[k] * count :]
+            B, outputs = self.A[k] @ S, list[Array]()
+            rows_of_mode = Y[:, self.groups[k] * count :]
             for i, (row, other) in enumerate(zip(self.rows, replaced, strict=True)):
                 argument = row[k, None, :n] @ S
-                for share, before in zip(row[k, n:], taken, strict=True):
+                for share, before in zip(row[k, n:], outputs, strict=True):
                     argument = argument + share * before
-                taken.append(own[:, i : i + 1] if other else argument)
-                B = B + self.columns[k, i, :, None] @ (taken[-1] - linear[k, i, None] @ S)
+                outputs.append(rows_of_mode[:, i : i + 1] if other else argument)
+                B = B + self.columns[k, i, :, None] @ (outputs[-1] - linear[k, i, None] @ S)
             yield k, B
 
     def is_free(self, k: int) -> bool:
@@ -200,12 +200,12 @@ def largest_region(
 
 def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     """Return the region with the largest start, for the columns g that fit another."""
-    n, held = loop.A.shape[1], loop.held
+    n, row_count = loop.A.shape[1], loop.held
     basis = symmetric_basis(n)
-    unknowns = len(basis) + held * n + 1
-    S, Y = np.zeros((unknowns, n, n)), np.zeros((unknowns, held, n))
+    unknowns = len(basis) + row_count * n + 1
+    S, Y = np.zeros((unknowns, n, n)), np.zeros((unknowns, row_count, n))
     S[: len(basis)] = basis
-    Y[len(basis) : -1] = np.eye(held * n).reshape(-1, held, n)
+    Y[len(basis) : -1] = np.eye(row_count * n).reshape(-1, row_count, n)
     size = np.zeros((unknowns, 1, 1))
     size[-1] = 1.0
     unit = np.linalg.norm(loop.starts, axis=1).max()
@@ -214,14 +214,14 @@ def _improved(loop: SaturatingLoop, rate: float, near: Region) -> Region | None:
     blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in loop.starts / unit]
     corner = np.zeros((n + 1, n + 1))
     corner[n, n] = 1.0
-    blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(held)]
+    blocks += [(corner, _bordered(S, Y[:, i : i + 1], 0 * size)) for i in range(row_count)]
     program = SemidefiniteProgram(unknowns)
     for constant, images in [*blocks, *_decreases(loop, rate, S, Y, near)]:
         program.add(constant, [(0, packed_columns(images))])
-    reached = program.maximize(loop.allowance)
-    if reached is None or reached.x[-1] <= 0:
+    maximum = program.maximize(loop.allowance)
+    if maximum is None or maximum.x[-1] <= 0:
         return None
-    x = reached.x
+    x = maximum.x
     found, rows = np.tensordot(x, S, axes=1), np.tensordot(x, Y, axes=1)
     return Region(np.asarray(found), rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
 
@@ -257,7 +257,7 @@ def _column(B: Array, S: Array, rate: float) -> Array:
 
 
 @dataclass(frozen=True)
-class _Held:
+class _RoundedRows:
     """Rows h in units of the spec, for a region that is round in coordinates ``x = T z``."""
 
     H: Array
@@ -289,12 +289,12 @@ class _Search:
 
     def rounded_rows(self, H: Array, way: float) -> Array:
         """Return rounded rows between those of the unsaturated signals and others."""
-        moved = self.loop.shared + way * (H - self.loop.shared)
-        found = self.limits[:, None] * (moved @ np.linalg.inv(self.T))
+        mixed_rows = self.loop.shared + way * (H - self.loop.shared)
+        found = self.limits[:, None] * (mixed_rows @ np.linalg.inv(self.T))
         log2 = log2_of(found)
         return np.asarray(np.ldexp(np.rint(np.ldexp(found, log2)), -log2))
 
-    def program(self, held: _Held) -> OneForm:
+    def program(self, held: _RoundedRows) -> OneForm:
         """Return the conditions for given rows."""
         rows = [[[Fraction(float(v)) for v in h] for h in H] for H in self.loop.by_mode(held.H)]
         system = between(self.system, rows, rounding=self.rounding)
@@ -303,7 +303,7 @@ class _Search:
         return OneForm.of(steps, own.balanced(steps))
 
     def solve(
-        self, held: _Held, rate: float, size: float, *, largest: bool = False
+        self, held: _RoundedRows, rate: float, size: float, *, largest: bool = False
     ) -> FormSolution | None:
         """Return Q and multipliers for a start of some size, with most to spare.
 
@@ -318,15 +318,15 @@ class _Search:
         share, level = share_of(rate, self.loop.time), None if largest else 1.0
         return program.solve(share, bounds, self.loop.allowance, level)
 
-    def largest(self, region: Region, rate: float) -> _Held | None:
+    def largest(self, region: Region, rate: float) -> _RoundedRows | None:
         """Return the rows with the largest start for them, rounded as it is."""
         slower = self.rate(RATES[0] * position_of(rate, self.limit, self.loop.time))
         shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
         T = np.asarray(self.T @ round_coordinates(shape))
         for way in WAYS:
-            held = _Held(self.rounded_rows(region.H, way), T, region.size)
+            held = _RoundedRows(self.rounded_rows(region.H, way), T, region.size)
             # The rows are made for this size, which leaves no room: a little less does.
-            if way == 1.0 and self.solve(held, slower, BELOW * region.size):
+            if way == 1.0 and self.solve(held, slower, START_SHARE * region.size):
                 return held
             found = self.solve(held, rate, region.size, largest=True)
             if found is not None:
@@ -335,8 +335,8 @@ class _Search:
         return None
 
     def fastest(
-        self, region: Region, held: _Held, level: float, slow: float
-    ) -> tuple[_Held, float]:
+        self, region: Region, held: _RoundedRows, level: float, slow: float
+    ) -> tuple[_RoundedRows, float]:
         """Return rows for a start, and the position of the fastest rate that bisection finds."""
         fast = 1.0
         for _ in range(BISECTIONS):
@@ -351,16 +351,20 @@ class _Search:
                 region, held, slow = nearby, found, position
         return held, slow
 
-    def rounded(self, held: _Held, level: Fraction, rate: Fraction) -> Iterator[SaturatedEllipsoid]:
+    def rounded(
+        self, held: _RoundedRows, level: Fraction, rate: Fraction
+    ) -> Iterator[SaturatedEllipsoid]:
         """Yield the region with Q and the multipliers in integers, with ever more digits."""
         found = self.solve(held, float(rate), float(level))
         if found is None:
             return
-        each, log2 = [held.H], log2_of(held.H)
+        row_blocks, log2 = [held.H], log2_of(held.H)
         if max(self.loop.groups) > 0:
-            by_mode = self.loop.by_mode(held.H)
-            each = [by_mode[k] for k in self.stands]
-        rows = tuple(tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(each), log2))
+            rows_by_mode = self.loop.by_mode(held.H)
+            row_blocks = [rows_by_mode[k] for k in self.stands]
+        rows = tuple(
+            tuple(int(v) for v in row) for row in np.ldexp(np.concatenate(row_blocks), log2)
+        )
         for Q, power, known in found.roundings(held.T):
             yield SaturatedEllipsoid(
                 Q=Q,
@@ -383,7 +387,7 @@ def search_saturated(
     the arithmetic rounds, ellipsoids that cover that come before others.
     """
     assert system.saturation is not None  # only saturating systems are searched
-    lean, stands = _without_twins(system)
+    lean, equal_modes = _merge_similar_modes(system)
     family, raw = Family.of(lean), SaturatingLoop.of(lean, allowance)
     slowest = SLOWEST[system.time]
     T = _coordinates(lean, family, rate_at(slowest, family.limit, system.time), allowance)
@@ -393,24 +397,24 @@ def search_saturated(
     loop = raw.transformed(T)
     if not (np.isfinite(T).all() and loop.is_finite):
         return OUT_OF_RANGE
-    search = _Search(lean, T, loop, family.limit, stands)
-    wanted = system.saturation.start.wanted
-    enough = np.inf if wanted is None else float(wanted) / BELOW**2
+    search = _Search(lean, T, loop, family.limit, equal_modes)
+    required_start = system.saturation.start.wanted
+    enough = np.inf if required_start is None else float(required_start) / START_SHARE**2
     region = largest_region(loop, search.rate(slowest), None, enough)
     if region is None:
         return NO_MARGIN
     for rounding in (True, False) if system.roundings else (False,):
-        own = replace(search, rounding=rounding)
-        found = own.largest(region, own.rate(slowest))
+        variant = replace(search, rounding=rounding)
+        found = variant.largest(region, variant.rate(slowest))
         if found is None:
             continue
-        level = Fraction(f"{BELOW * found.size:.4e}")
-        if wanted is not None and wanted < level:
-            level = wanted
-        held, position = own.fastest(region, found, float(level), slowest)
+        level = Fraction(f"{START_SHARE * found.size:.4e}")
+        if required_start is not None and required_start < level:
+            level = required_start
+        held, position = variant.fastest(region, found, float(level), slowest)
         for share in RATES:
-            claimed = round_rate(own.rate(share * position), system.time)
-            yield from map(Candidate, own.rounded(held, level, claimed))
+            claimed = round_rate(variant.rate(share * position), system.time)
+            yield from map(Candidate, variant.rounded(held, level, claimed))
     return NO_MARGIN
 
 
@@ -426,14 +430,9 @@ def _coordinates(
         return None
     program = OneForm.of(plain_steps(system, rounding=False), StepUnits(T, np.zeros(0)))
     one, basis = np.eye(program.order), program.basis
-    within = [Constraint(0 * one, basis, 0 * one), Constraint(one, -basis)]
-    found = program.solve(share_of(rate, system.time), within, allowance, 1.0)
+    bounds = [Constraint(0 * one, basis, 0 * one), Constraint(one, -basis)]
+    found = program.solve(share_of(rate, system.time), bounds, allowance, 1.0)
     return None if found is None else np.asarray(T @ round_coordinates(found.Q))
-
-
-def share_of(rate: float, time: Time) -> float:
-    """Return twice the rate of a flow, or what a step takes of V."""
-    return 2 * rate if time is Time.CONTINUOUS else 1 - rate**2
 
 
 def log2_of(H: Array) -> int:
@@ -441,26 +440,28 @@ def log2_of(H: Array) -> int:
     return max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
 
 
-def _without_twins(system: SwitchedSystem) -> tuple[SwitchedSystem, tuple[int, ...]]:
+def _merge_similar_modes(system: SwitchedSystem) -> tuple[SwitchedSystem, tuple[int, ...]]:
     """Return the system with only those modes that floating point tells apart.
 
     With the number of the mode that stands for each mode of the whole system, in contact and free.
     """
     assert system.saturation is not None
-    same = nearly_same(to_floats([mode.A for mode in system.modes]))
+    equal_modes = nearly_same(to_floats([mode.A for mode in system.modes]))
     if system.free:
         free = nearly_same(to_floats([mode.A for mode in system.free]))
-        same += [len(system.modes) + k for k in free]
-    kept = sorted({*same})
-    own = system.only({mode.name for k, mode in enumerate(system.every_mode) if k in kept})
+        equal_modes += [len(system.modes) + k for k in free]
+    representatives = sorted({*equal_modes})
+    reduced = system.only(
+        {mode.name for k, mode in enumerate(system.every_mode) if k in representatives}
+    )
 
     def few(rows: tuple[RationalMatrix, ...]) -> tuple[RationalMatrix, ...]:
-        return tuple(rows[k] for k in kept) if rows else ()
+        return tuple(rows[k] for k in representatives) if rows else ()
 
     signals = tuple(
         replace(item, columns=few(item.columns), rows=few(item.rows), errors=few(item.errors))
         for item in system.saturation.signals
     )
     saturation = replace(system.saturation, signals=signals)
-    lean = replace(own, flights=None, saturation=saturation, enclosures=())
-    return lean, tuple(map(kept.index, same))
+    lean = replace(reduced, flights=None, saturation=saturation, enclosures=())
+    return lean, tuple(map(representatives.index, equal_modes))

@@ -85,13 +85,13 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
     """
     rows, entries, products, factor = 0.0, 0.0, shared**3 / 3, shared**2 / 2
     count = 0
-    for order, touched in cones:
+    for order, unknown_count in cones:
         size = order * (order + 1) / 2
         count += 1
         rows += size
         entries += size**2
-        products += size**3 / 3 + size * touched * (size + touched)
-        factor += size * (size / 2 + touched)
+        products += size**3 / 3 + size * unknown_count * (size + unknown_count)
+        factor += size * (size / 2 + unknown_count)
     memory = BYTES_PER_ENTRY * rows * variables + BYTES_PER_FACTOR_ENTRY * factor
     step = PER_STEP + PER_BLOCK_ENTRY * entries + PER_PRODUCT * products
     built = PER_PROGRAM + PER_CONE * count + PER_ENTRY * rows * variables
@@ -135,15 +135,15 @@ class SemidefiniteProgram:
         whole = np.zeros((len(offset), len(unknowns)))
         for place, (_, image) in zip(places, images, strict=True):
             whole[:, np.searchsorted(unknowns, place)] += image
-        used = whole.any(axis=0)
-        self._blocks.append(Block(len(constant), offset, unknowns[used], whole[:, used]))
+        is_used = whole.any(axis=0)
+        self._blocks.append(Block(len(constant), offset, unknowns[is_used], whole[:, is_used]))
 
     def cost(self) -> Cost:
         """Predict what a solution takes: unknowns of one block alone are eliminated with it."""
-        every = np.concatenate([block.unknowns for block in self._blocks])
-        shared = np.bincount(every, minlength=self.unknowns) > 1
+        unknowns = np.concatenate([block.unknowns for block in self._blocks])
+        is_shared = np.bincount(unknowns, minlength=self.unknowns) > 1
         cones = ((block.order, len(block.unknowns)) for block in self._blocks)
-        return program_cost(self.unknowns, int(shared.sum()), cones)
+        return program_cost(self.unknowns, int(is_shared.sum()), cones)
 
     @cached_property
     def groups(self) -> list[ConeGroup]:
@@ -153,11 +153,11 @@ class SemidefiniteProgram:
             alike.setdefault((block.order, block.unknowns.tobytes()), []).append(block)
         return [
             ConeGroup(
-                own[0].unknowns,
-                unpack(np.array([block.constant for block in own]), own[0].order),
-                unpack(np.array([block.images.T for block in own]), own[0].order),
+                blocks[0].unknowns,
+                unpack(np.array([block.constant for block in blocks]), blocks[0].order),
+                unpack(np.array([block.images.T for block in blocks]), blocks[0].order),
             )
-            for own in alike.values()
+            for blocks in alike.values()
         ]
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
@@ -170,7 +170,7 @@ class SemidefiniteProgram:
 
         cost, count, blocks = self.cost(), self.unknowns, self._blocks
         allowance.take(cost, f"a program of {count} unknowns and {len(blocks)} blocks")
-        more = allowance.left / cost.per_step
+        affordable_steps = allowance.left / cost.per_step
         first = np.cumsum([0, *(len(block.constant) for block in blocks)])
         entries = list[tuple[Array, NDArray[np.int64], NDArray[np.int64]]]()
         for start, block in zip(first, blocks, strict=False):
@@ -185,14 +185,14 @@ class SemidefiniteProgram:
         settings.verbose = False
         settings.max_threads = 1
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-12
-        settings.max_iter = STEPS + int(min(more, MOST_STEPS - STEPS))
+        settings.max_iter = STEPS + int(min(affordable_steps, MOST_STEPS - STEPS))
         settings.time_limit = allowance.fuse.left
-        given = quadratic, objective, matrix, np.concatenate([b.constant for b in blocks]), cones
-        solution = clarabel.DefaultSolver(*given, settings).solve()
+        problem = quadratic, objective, matrix, np.concatenate([b.constant for b in blocks]), cones
+        solution = clarabel.DefaultSolver(*problem, settings).solve()
         if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
             # It fails at once on a few programs that it has scaled, and solves them unscaled.
             settings.equilibrate_enable = False
-            solution = clarabel.DefaultSolver(*given, settings).solve()
+            solution = clarabel.DefaultSolver(*problem, settings).solve()
         allowance.charge((solution.iterations - STEPS) * cost.per_step)
         x, z = (np.asarray(part, dtype=float) for part in (solution.x, solution.z))
         if x.shape != (count,) or not (np.isfinite(x).all() and np.isfinite(z).all()):
@@ -210,6 +210,6 @@ def packed_congruence(L: Array, R: Array) -> Array:
     """Return the packed upper half of ``L Q R'`` for each packed entry of Q."""
     a, b = triangle(len(L))
     i, j = triangle(L.shape[1])
-    both = L[a][:, i] * R[b][:, j] + L[a][:, j] * R[b][:, i]
+    products = L[a][:, i] * R[b][:, j] + L[a][:, j] * R[b][:, i]
     scales = np.where(a == b, 1.0, np.sqrt(2.0))[:, None] * np.where(i == j, 0.5, np.sqrt(0.5))
-    return np.asarray(scales * both)
+    return np.asarray(scales * products)

@@ -36,13 +36,13 @@ PAIRS, GREEDY = 96, 48
 # Probability of a random choice of the others.
 SHARE = 0.1
 # Cosine of a direction that returns, and numbers of sequences that are examined and proposed.
-NEAR, LOOKS, PROPOSED = 0.9, 2000, 8
+MIN_COSINE, LOOKS, PROPOSED = 0.9, 2000, 8
 # Size of a motion at rest in free space, which begins anew.
-AT_REST = 1e-9
+REST_SIZE = 1e-9
 # Work of an entry of a matrix that is enclosed.
 PER_ENTRY = 4e-6
 # Relative distance of an eigenvalue from floating point, and halvings to enclose it.
-AROUND, HALVINGS = 1e-7, 120
+BRACKET_WIDTH, HALVINGS = 1e-7, 120
 
 
 def search_contact(family: Family) -> Candidates[GrowingSequence]:
@@ -85,11 +85,13 @@ class _Loop:
         else:
             touching, flying = ({m.name for m in part} for part in (system.modes, system.free))
             rows = () if system.contact is None else system.contact.pulls
-        every, clock = system.every_mode, system.clock
-        of_clock = [0] * len(every) if clock is None else clock.kind_of(m.name for m in every)
-        turn_of = dict(zip((mode.name for mode in every), of_clock, strict=True))
+        all_modes, clock = system.every_mode, system.clock
+        clock_kinds = (
+            [0] * len(all_modes) if clock is None else clock.kind_of(m.name for m in all_modes)
+        )
+        turn_of = dict(zip((mode.name for mode in all_modes), clock_kinds, strict=True))
         kinds: dict[tuple[int, ...], list[Mode]] = {}
-        for mode in every:
+        for mode in all_modes:
             kind = mode.name in touching, mode.name in flying, turn_of[mode.name]
             kinds.setdefault(kind, []).append(mode)
         modes = [pair for group in kinds.values() for pair in distinct_modes(group)]
@@ -97,10 +99,10 @@ class _Loop:
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
         turns = np.zeros((1, len(names)), dtype=np.int64)
         if clock is not None:
-            own = np.array([turn_of[name] for name in names])
+            kinds_of_modes = np.array([turn_of[name] for name in names])
             turns = np.full((clock.length, len(names)), NOWHERE)
             for turn, of_turn, target in clock.turns():
-                turns[turn, own == of_turn] = target
+                turns[turn, kinds_of_modes == of_turn] = target
         return cls(
             system,
             names,
@@ -114,39 +116,41 @@ class _Loop:
     def allowed(self, x: Array) -> NDArray[np.bool_]:
         """Return which modes may be in force at states of shape (k, n); shape (k, m)."""
         delta, forces = x[:, -1], x @ self.pulls.T
-        touches = (delta > 0) & (forces > 0).all(axis=1)
+        is_contact = (delta > 0) & (forces > 0).all(axis=1)
         flies = (delta <= 0) | ((forces <= 0).all(axis=1) & bool(len(self.pulls)))
         # Between pushing and pulling forces, contact and free motion are possible.
-        unclear = ~(touches | flies)[:, None]
-        felt = touches[:, None] & self.touching | flies[:, None] & self.flying
-        return felt | unclear | ~(self.touching | self.flying)
+        unclear = ~(is_contact | flies)[:, None]
+        is_consistent = is_contact[:, None] & self.touching | flies[:, None] & self.flying
+        return is_consistent | unclear | ~(self.touching | self.flying)
 
     def sequences(self) -> Iterator[list[int]]:
         """Yield sequences of modes over which a motion returns to its direction, and is larger.
 
         What stays in one mode turns but little from step to step, and would crowd out the others.
         """
-        chosen, states, sizes, turns = self._simulated()
+        choices, states, sizes, turns = self._simulated()
         clock = self.system.clock
         # A motion that misses deadlines may come back to a state of the rule at any step.
         round_ = len(self.turns) if clock is None or clock.is_round else 1
-        seen: set[tuple[int, ...]] = set()
+        known_sequences: set[tuple[int, ...]] = set()
         # Growth, by the motion and the number of steps.
         for end in range(LENGTH, LENGTH // 2, -max(1, LENGTH // 8)):
             end -= end % round_
             lengths = np.arange(round_, min(LONGEST, end) + 1, round_)
             cosines = np.einsum("ki,lki->lk", states[end], states[end - lengths])
             growth = sizes[end] - sizes[end - lengths]
-            back = (cosines > NEAR) & (turns[end] == turns[end - lengths])
-            growth = np.where(back, growth / lengths[:, None], -np.inf)
+            is_return = (cosines > MIN_COSINE) & (turns[end] == turns[end - lengths])
+            growth = np.where(is_return, growth / lengths[:, None], -np.inf)
             order = np.argsort(-growth, axis=None)[: 2 * LOOKS]
             for place in order:
                 k, motion = np.unravel_index(place, growth.shape)
                 if not growth[k, motion] > 0:
                     break
-                found = _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
-                if len(found) > 1 and tuple(found) not in seen:
-                    seen.add(tuple(found))
+                found = _find_repeated_part(
+                    [int(i) for i in choices[end - lengths[k] : end, motion]]
+                )
+                if len(found) > 1 and tuple(found) not in known_sequences:
+                    known_sequences.add(tuple(found))
                     yield found
 
     def _simulated(self) -> tuple[NDArray[np.int64], Array, Array, NDArray[np.int64]]:
@@ -160,7 +164,7 @@ class _Loop:
         random = np.arange(MOTIONS) >= PAIRS + GREEDY
         x = rng.normal(size=(MOTIONS, n))
         x /= np.linalg.norm(x, axis=1)[:, None]
-        chosen = np.zeros((LENGTH, MOTIONS), dtype=np.int64)
+        choices = np.zeros((LENGTH, MOTIONS), dtype=np.int64)
         states, sizes = np.zeros((LENGTH + 1, MOTIONS, n)), np.zeros((LENGTH + 1, MOTIONS))
         states[0] = x
         turns = np.zeros((LENGTH + 1, MOTIONS), dtype=np.int64)
@@ -174,18 +178,18 @@ class _Loop:
             possible = self.allowed(x) & (ahead != NOWHERE)
             # Where no mode is on turn for these signs, any of the turn is followed.
             possible |= ~possible.any(axis=1)[:, None] & (ahead != NOWHERE)
-            chosen[step] = np.where(possible, value, -np.inf).argmax(axis=1)
-            x = images[np.arange(MOTIONS), chosen[step]]
-            turns[step + 1] = ahead[np.arange(MOTIONS), chosen[step]]
+            choices[step] = np.where(possible, value, -np.inf).argmax(axis=1)
+            x = images[np.arange(MOTIONS), choices[step]]
+            turns[step + 1] = ahead[np.arange(MOTIONS), choices[step]]
             size = np.linalg.norm(x, axis=1)
             moving = np.column_stack([x[:, :-1], np.maximum(x[:, -1], 0)])
-            rests = ~(np.linalg.norm(moving, axis=1) > AT_REST * size)
+            rests = ~(np.linalg.norm(moving, axis=1) > REST_SIZE * size)
             x = np.where(rests[:, None], rng.normal(size=x.shape), x / size[:, None])
             x /= np.linalg.norm(x, axis=1)[:, None]
             sizes[step + 1] = np.where(rests, -np.inf, sizes[step] + np.log(size))
             sizes[step + 1] = np.where(np.isfinite(sizes[step + 1]), sizes[step + 1], 0.0)
             states[step + 1] = x
-        return chosen, states, sizes, turns
+        return choices, states, sizes, turns
 
     def candidates(
         self, sequence: Sequence[int], allowance: Allowance
@@ -205,7 +209,8 @@ class _Loop:
             v = vector.real
             if any(self._keeps_signs(sequence, x) for x in (v, -v)):
                 steps = tuple(
-                    (self.names[mode], Fraction(len([*same]))) for mode, same in groupby(sequence)
+                    (self.names[mode], Fraction(len([*repeats])))
+                    for mode, repeats in groupby(sequence)
                 )
                 sets = (self.system.enclosure_of(name) for name in {name for name, _ in steps})
                 cost = Cost(PER_ENTRY * self.system.order**2 * sum(map(len, sets)))
@@ -223,7 +228,7 @@ class _Loop:
         return True
 
 
-def _once(sequence: list[int]) -> list[int]:
+def _find_repeated_part(sequence: list[int]) -> list[int]:
     """Return what a sequence repeats."""
     count = len(sequence)
     return next(
@@ -238,15 +243,17 @@ def _bracket(
 ) -> tuple[Fraction, Fraction] | None:
     """Enclose an eigenvalue between two near numbers; None if there is none near the value."""
     limit = Fraction(system.time is Time.DISCRETE)
-    low = max(Fraction(value * (1 - AROUND)), limit)
-    high = Fraction(value * (1 + AROUND))
+    low = max(Fraction(value * (1 - BRACKET_WIDTH)), limit)
+    high = Fraction(value * (1 + BRACKET_WIDTH))
     with precision():
         M = growth_matrix(system, steps)
-        below = characteristic_sign(M, low)
-        if below * characteristic_sign(M, high) >= 0:
+        sign_at_low = characteristic_sign(M, low)
+        if sign_at_low * characteristic_sign(M, high) >= 0:
             return None
         for _ in range(HALVINGS):
             middle = (low + high) / 2
             sign = characteristic_sign(M, middle)
-            low, high = (middle, high) if sign == below else (low, middle) if sign else (low, high)
+            low, high = (
+                (middle, high) if sign == sign_at_low else (low, middle) if sign else (low, high)
+            )
     return low, high

@@ -59,9 +59,9 @@ def search_value(family: Family) -> Candidates[GrowingSequence]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
     # Shape (sets, corners, n, n)
     corners = matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
-    least = COARSE_GRID if count == 1 else FEWEST
+    fewest_values = COARSE_GRID if count == 1 else FEWEST
     fitting = int((EVALUATIONS / len(corners)) ** (1 / count))
-    grid = np.linspace(0, 1, max(least, min(GRID, fitting)))
+    grid = np.linspace(0, 1, max(fewest_values, min(GRID, fitting)))
     values = len(grid) ** count
     looks = len(corners) * values + PEAKS * CLOSELY * count
     work = looks * (PER_MATRIX + PER_PRODUCT * corners.shape[-1] ** 3)
@@ -90,10 +90,13 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
     # The periods of each value could take the whole budget.
     allowance = family.allowance.part(0.5)
     for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
-        at_shares = Family.of(system_at(system, shares), allowance)
-        if at_shares.system.time is Time.CONTINUOUS and at_shares.system.switching.is_arbitrary:
-            yield from _at(shares, search_mixture(at_shares))
-        yield from _at(shares, search_period(at_shares))
+        family_at_values = Family.of(system_at(system, shares), allowance)
+        if (
+            family_at_values.system.time is Time.CONTINUOUS
+            and family_at_values.system.switching.is_arbitrary
+        ):
+            yield from _tag_shares(shares, search_mixture(family_at_values))
+        yield from _tag_shares(shares, search_period(family_at_values))
     return "nothing grows at the values tried"
 
 
@@ -104,7 +107,7 @@ def _count(system: SwitchedSystem) -> int | None:
     return count if odd is None else None
 
 
-def _at(
+def _tag_shares(
     shares: Shares, candidates: Candidates[GrowingSequence]
 ) -> Iterator[Candidate[GrowingSequence]]:
     """Make what is found about the system at a value evidence about the parameters."""
@@ -119,8 +122,8 @@ def _growth(corners: Array, shares: Array, time: Time) -> Array:
     """
     weights = np.ones((len(shares), 1))
     for share in shares.T:
-        both = np.stack([1 - share, share], axis=1)
-        weights = (weights[:, :, None] * both[:, None, :]).reshape(len(shares), -1)
+        weight_pair = np.stack([1 - share, share], axis=1)
+        weights = (weights[:, :, None] * weight_pair[:, None, :]).reshape(len(shares), -1)
     values = np.linalg.eigvals(np.tensordot(weights, corners, axes=1))
     if time is Time.CONTINUOUS:
         return np.asarray(values.real.max(axis=1))
@@ -134,11 +137,11 @@ def _peaks(corners: Array, grid: Array, count: int, time: Time) -> list[tuple[in
     growth = growth.reshape(-1, *values.shape[:-1])
     highest = np.ones(growth.shape, dtype=bool)
     for axis in range(1, count + 1):
-        beside = [(0, 0)] * growth.ndim
-        beside[axis] = (1, 1)
-        padded = np.moveaxis(np.pad(growth, beside, constant_values=-np.inf), axis, 0)
-        here = np.moveaxis(highest, axis, 0)
-        here &= (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+        padding = [(0, 0)] * growth.ndim
+        padding[axis] = (1, 1)
+        padded = np.moveaxis(np.pad(growth, padding, constant_values=-np.inf), axis, 0)
+        axis_view = np.moveaxis(highest, axis, 0)
+        axis_view &= (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
     places = np.argwhere(highest)
     largest = np.argsort(-growth[highest], kind="stable")[:PEAKS]
     return [(int(places[i][0]), grid[places[i][1:]]) for i in largest]
@@ -172,12 +175,12 @@ def search_mixture(family: Family) -> Candidates[GrowingSequence]:
         return "every combination tried is stable"
     for denominator in AVERAGE_DENOMINATORS:
         shares = _rationalize(weights, denominator)
-        named = tuple(
+        named_shares = tuple(
             (mode.name, share)
             for mode, share in zip(system.modes, shares, strict=True)
             if share > 0
         )
-        yield Candidate(GrowingSequence(named))
+        yield Candidate(GrowingSequence(named_shares))
     return None
 
 

@@ -92,8 +92,8 @@ class Allowance:
     @property
     def left(self) -> float:
         """Remaining work; a part has at most the work of the whole."""
-        own = max(0.0, self.work - self.charged)
-        return own if self._parent is None else min(own, self._parent.left)
+        remainder = max(0.0, self.work - self.charged)
+        return remainder if self._parent is None else min(remainder, self._parent.left)
 
     def charge(self, work: float) -> None:
         """Take work off; raises as `Fuse.check` does."""

@@ -55,7 +55,7 @@ class AbstractChecked:
 
     @property
     def refuted_in(self) -> str | None:
-        """Contact in which it is refuted, where the loss of contact stays open; or None."""
+        """Scope of contact of a refutation that leaves the loss of contact undecided; or None."""
         return refuted_in(self.system, self.statements)
 
     @property
@@ -68,7 +68,7 @@ class AbstractChecked:
 class Certificate(AbstractChecked):
     """A claim about one spec with the evidence for it."""
 
-    # spec_name, spec_sha256: the spec that it belongs to, and the hash of what that file says.
+    # spec_name, spec_sha256: name of the spec, and hash of the content of its file.
     spec_name: str
     spec_sha256: str
     # ``deflection`` or ``force`` for an interaction design, None for given matrices.
@@ -78,8 +78,8 @@ class Certificate(AbstractChecked):
     system: SwitchedSystem  # Subject of the statements
     statements: tuple[AbstractEvidence, ...]  # At least one, each with its numbers
     version: str  # Version of this package
-    # At which points of the ranges the system stands; empty for all of them. What grows there
-    # refutes the spec, and nothing else there says anything of it.
+    # Points of the ranges that the system covers; empty for all points. Growth at a point refutes
+    # the spec; other statements at points do not concern the spec.
     points: str = ""
     # Smallest and largest age of the force, in samples, where that is more than the spec declares,
     # as its goal `delay` asks. What is proved there holds of the spec.
@@ -141,7 +141,7 @@ def refutes_in_contact(
 def granted(
     system: SwitchedSystem, statements: Iterable[AbstractEvidence]
 ) -> tuple[Assumption, ...]:
-    """Return what is taken for granted: how contact is lost, only by what covers its loss.
+    """Return the assumptions; the model of contact loss is assumed by statements that cover it.
 
     Of a system about whose stability nothing is shown, all that was to be taken for granted.
     """
@@ -161,7 +161,7 @@ def common_quadratic_of(
     for item in statements:
         if item.is_common_quadratic:
             return CommonQuadraticStatus.EXISTS
-        # Without resets, such a function would prove stability.
+        # Without resets, a common quadratic function would prove stability.
         unstable = item.shows is Shows.INSTABILITY and item.is_of_modes(system)
         unstable = unstable and (not system.switching.resets or item.names_unstable_mode)
         if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:

@@ -45,7 +45,7 @@ def write_certificate(certificate: Certificate, spec: Path, file: Path) -> None:
 
 
 def check_owner(spec: Path, name: str, folder: Path) -> None:
-    """Refuse to go on where the files of that name in a folder are those of another spec.
+    """Raise an error if files of that name in a folder belong to another spec.
 
     That is, of one that still exists; or what is there is no certificate at all.
     """

@@ -31,7 +31,7 @@ from nrs_design.proof.text import quoted
 
 MAX_VERDICTS = 2
 MAX_BYTES = 32 * 2**20
-# What a hostile document can raise before the exact check: all of it means rejection.
+# Exceptions that a malformed document can raise before the exact check: each means rejection.
 _MALFORMED = (LookupError, TypeError, ValueError, ArithmeticError, AttributeError, RecursionError)
 
 
@@ -226,7 +226,7 @@ def _find_difference(document: Mapping[str, Any], certificate: Certificate) -> s
 
 
 def _text_of(document: Mapping[str, Any], key: str) -> str:
-    # A missing field is not the same as one that is null.
+    # A missing field and a null field differ.
     return json.dumps(document[key], sort_keys=True) if key in document else ""
 
 

@@ -15,7 +15,7 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     """Return the unit of every gain, by controller; the motor's follows from what is assumed."""
     if not certificate.gains:
         return {}
-    # Controllers are slow to load, and a certificate of given matrices has none.
+    # Controllers are slow to load; a certificate of given matrices needs no controllers.
     from nrs_design.controllers.controller_design import units_of
     from nrs_design.loop.assumptions import command_in
     from nrs_design.models.axis import COMMAND_UNITS, find_axis

@@ -31,13 +31,14 @@ E = TypeVar("E", bound=AbstractEvidence, covariant=True)
 
 @dataclass(frozen=True, slots=True)
 class Candidate(Generic[E]):
-    """Proposed evidence, and the outcome of the search in words if the check accepts it."""
+    """Proposed evidence, and the outcome that is reported if the exact check accepts it."""
 
     evidence: E
     words: str = "found"
 
 
-# Best candidates first. The return value says why there is none; None leaves it to the check.
+# Candidates, the best first. The generator returns the reason for an empty search, or None if the
+# result of the exact check is the reason.
 Candidates = Generator[Candidate[E], None, str | None]
 Search = Callable[[Family], Candidates[AbstractEvidence]]
 
@@ -60,7 +61,7 @@ def take_candidate(
 def first_accepted(
     candidates: Candidates[E], system: SwitchedSystem, allowance: Allowance | None = None
 ) -> tuple[E | None, str]:
-    """Return the first candidate that the exact check accepts, and the outcome in words.
+    """Return the first candidate that the exact check accepts, and the outcome as text.
 
     Nothing becomes evidence but here, or from evidence that was accepted here. No more candidates
     than needed are asked for. Checks are charged to the allowance; none is left out for it.

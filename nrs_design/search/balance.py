@@ -13,7 +13,7 @@ from nrs_design.proof.mode import Time
 SWEEPS = 64
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
-# Lyapunov equations are solved to this in at most so many rounds.
+# Lyapunov equations: largest residual power, most doublings, and bound of a diverging power.
 NOTHING_LEFT, DOUBLINGS, LARGEST_POWER = 1e-10, 60, 1e50
 
 

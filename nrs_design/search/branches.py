@@ -28,7 +28,7 @@ from nrs_design.search.work import Allowance, Cost
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Largest numbers of steps of a word, of products of one length, and of all products.
+# Largest number of steps of a word, of products with equal length, and of all products.
 MAX_LENGTH, MAX_PRODUCTS, MOST_PRODUCTS = 64, 20_000, 150_000
 # Entries of the products of a length.
 MAX_ENTRIES = 2_000_000
@@ -36,7 +36,7 @@ MAX_ENTRIES = 2_000_000
 BETTER = 1e-6
 # Work for the norm and the eigenvalues of a product, and per multiplication in them.
 PER_MATRIX, PER_PRODUCT = 1e-5, 6e-8
-# Norms of the nodes: part of a mean word that is kept, and number of steps along it.
+# Norms of the nodes: contraction of a mean word, and number of steps along the word.
 KEPT, SWEEPS = 0.9, 40
 FLAT = 1e-9
 # Larger graphs are not searched.
@@ -50,7 +50,7 @@ def best_words(
     T: Array | None = None,
     longest: int = MAX_LENGTH,
 ) -> Iterator[tuple[tuple[int, ...], float]]:
-    """Yield closed words of edges with their growth per step, each larger than all before it.
+    """Yield closed words of edges with their growth per step, in increasing order of growth.
 
     Words that grow by no more than the floor are not looked for; lengths for which work or memory
     do not suffice end the search. Norms are taken in coordinates T of every node, shape

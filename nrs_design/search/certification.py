@@ -28,7 +28,7 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One rung: its name, outcome, time in s, and work in units.
+    """Name, outcome, time in s and work in units of one search.
 
     The time differs from run to run, and decides nothing.
     """

@@ -21,7 +21,7 @@ from nrs_design.search.statements import asides
 from nrs_design.search.structure import merge_equal_modes, triangular_blocks
 from nrs_design.search.work import Allowance, Fuse
 
-# Share of the rest of the budget, for a faster decay than that of the first proof.
+# Share of the remaining budget for a faster decay rate than the rate of the first proof.
 FASTER_SHARE = 0.5
 SUSPICIOUS, ENCLOSURE = "suspicious modes", "enclosure of the ranges"
 WIDE = (
@@ -66,7 +66,7 @@ def certify(
     simple = system.switching.is_arbitrary and system.is_uniform and system.clock is None
     merged = merge_equal_modes(system) if simple else system
     task = _Task(method, limits, allowance, progress)
-    # Loss of contact and rounding errors concern the whole state.
+    # Loss of contact and rounding errors couple the blocks.
     simple = simple and system.contact is None and system.flights is None
     simple = simple and not system.roundings
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)

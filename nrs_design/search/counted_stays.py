@@ -117,7 +117,7 @@ class CountedProgram:
         return map(self._expanded, self.first.roundings(solution, claim, digits, errors=errors))
 
     def _timed(self, edge: Inequality) -> Inequality:
-        """Return an inequality between forms of first samples, with what a stay leaves of them."""
+        """Return an inequality between forms of first samples, with the decay over the stay."""
         rate, count = self.rates[edge.before], len(self.stays[edge.before])
         if edge.before == edge.after:
             return replace(edge, lasts=0.0, share=rate**-2)
@@ -136,7 +136,7 @@ class CountedProgram:
 
 
 def _copy_nodes(graph: FormsOnGraph, copies: Sequence[Sequence[tuple[int, int]]]) -> FormsOnGraph:
-    """Return a graph with copies of nodes, each at a state and so many times as large."""
+    """Return a graph with copies of nodes; a copy has a clock state and a weight of the form."""
     nodes, targets = list[Node](), list[list[tuple[int, int]]]()
     for node, own in zip(graph.nodes, copies, strict=True):
         targets.append([(len(nodes) + k, weight) for k, (_, weight) in enumerate(own)])

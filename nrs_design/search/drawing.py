@@ -30,8 +30,8 @@ Indices = NDArray[np.int64]
 # The name of a fact, and the node after the step if there are several that it is known of.
 Fact = tuple[str, int | None]
 
-# Times at which a stay of any length in a range is looked at: for each time of its mode, so many,
-# and one more; no fewer than for the first of these times, and no more than for the last.
+# Samples of the length of a stay, for each time constant of its mode. The number of time constants
+# is limited to the range from SHORTEST to LONGEST.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
 
 
@@ -130,7 +130,7 @@ class Inequality:
         weight_after: float,
         unit: int = 0,
     ) -> list[tuple[int, Array]]:
-        """Return what packed forms, from where they start, make of it, without facts.
+        """Return the blocks of the inequality for packed forms, without facts.
 
         Of a map ``keeps Q - counts M' Q M``, of a flow ``-(Q M + M' Q) - counts Q``, where M is
         multiplied with two to the power of the unit.

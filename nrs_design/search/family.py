@@ -71,7 +71,7 @@ class Family:
 
 
 def rate_limit(system: SwitchedSystem) -> float | None:
-    """Return a rate that no proof can beat: that of the slowest mode that need never be left.
+    """Return an upper bound of provable rates: the rate of the slowest mode that may last forever.
 
     In 1/s, or per step; None if all modes must be left, or floating point does not hold them.
     """

@@ -33,9 +33,9 @@ Matrices = NDArray[np.float64]
 class Coordinates(StrEnum):
     """States of the iteration; they decide how fast it ends, or whether."""
 
-    MEAN_NORM = "mean-norm"  # In which the mean of the modes' own norms is round
+    MEAN_NORM = "mean-norm"  # The mean of the norms of the modes is the identity
     BALANCED = "balanced"  # By powers of two
-    GIVEN = "given"  # Of the modes, as in the thesis
+    GIVEN = "given"  # Coordinates of the modes, as in the thesis
 
 
 class Order(StrEnum):

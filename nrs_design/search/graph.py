@@ -25,7 +25,7 @@ PER_PRODUCT = 2e-6
 PER_OPERATION = 3e-8
 # Entries of the products that are looked at together.
 CHUNK_ENTRIES = 2_000_000
-# Time between resets that grow by themselves, relative to the shortest other time.
+# Time between growing resets, relative to the shortest other time.
 BRIEF = 1e-5
 # Moves a factor per step off zero, of which there is no logarithm.
 LEAST_FACTOR = 1e-12

@@ -58,12 +58,12 @@ ANY_RATE = Fraction(1)
 KEPT = 0.99
 # Largest number of checked conditions with rounding errors.
 MOST_ROUNDED = 250
-# Largest number of stays that are shown one by one for a stable mode.
+# Largest number of stays of a stable mode that have an edge each.
 FEW_STAYS = 64
 # Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
 # ago.
 FEW_STATES, LONG_AGO = 12, 2
-# Share of the rest of the budget for words that limit the rate.
+# Share of the remaining budget for words that limit the rate.
 WORDS = 0.1
 # Relative resolution of the largest rate where it is not requested.
 ROUGH = 0.3
@@ -76,7 +76,7 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for each mode, in contact and in free motion."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    # The rest of the budget is for simpler functions in kept contact.
+    # Simpler functions for maintained contact need the remaining budget.
     allowance = family.allowance.part(0.25)
     nodes = len(family.system.every_mode)
     allowance.require(Cost(PER_EDGE * 2 * nodes**2), f"a graph of {2 * nodes**2} edges")
@@ -103,7 +103,7 @@ def draw_conewise_modes(family: Family) -> Drawing:
             tuple(Node(MODES if k < len(system.modes) else FREE, ()) for k in range(len(names))),
             0,
             ANY_RATE,
-            # The form of a state is that of the mode that takes the next step.
+            # The mode of the next step selects the form of a state.
             edges=tuple(Arc(k, name, None) for k, name in enumerate(names)),
         ),
         tuple(number[representative[name]] for name in names),

@@ -100,7 +100,7 @@ class Facts:
         return not self.is_continuous() and self.is_uniform() and len(system.modes) > 1
 
     def has_values(self) -> bool:
-        """Tell whether there are constant parameters, whose values can be examined one by one."""
+        """Tell whether the system has constant parameters."""
         fixed = bool(self.system.switching.fixed_ends)
         return fixed and self.is_uniform() and self.leaves_stable
 
@@ -114,7 +114,7 @@ class Rung:
     """One row of the ladder."""
 
     name: str  # For the reader
-    method: Method | None  # Option that asks for this rung alone; None for one of every method
+    method: Method | None  # Option that selects this rung; None if every method includes the rung
     applies: Callable[[Facts], bool]  # Tells whether the rung can decide a system
     # Yields candidates for a family, and for a size if the rung has several.
     search: Callable[..., Candidates[AbstractEvidence]]
@@ -127,7 +127,7 @@ class Rung:
     # Costs by length, for a rung whose forms have a memory of ever more steps.
     lengths: Callable[[SwitchedSystem], dict[int, Cost]] | None = None
     degree: int = 2  # Degree of these forms
-    clocked: bool = False  # Whether the rung is for systems with a clock, and for no others
+    clocked: bool = False  # Whether the rung applies to systems with a clock only
     # Whether growth in kept contact refutes the result of the rung, or is it.
     in_kept_contact: bool = True
 

@@ -46,7 +46,7 @@ class Bracket:
     # proved, refuted: scales, delays in samples, times in s, numbers of misses.
     proved: Fraction | None
     refuted: Fraction | None
-    end: str = ""  # Where the search for a refutation ended, and why there, if it found none
+    end: str = ""  # End of a search without refutation, and the reason
     # In which contact alone it is refuted, where its loss must be covered; empty for any.
     refuted_in: str = ""
     proof: Certification | None = None  # At the number that is proved
@@ -54,7 +54,7 @@ class Bracket:
 
 @dataclass(frozen=True)
 class CommandMargin:
-    """Disturbances under which the force limit is proved to be kept, and those that break it."""
+    """Disturbances with a proof of the force limit, and disturbances that exceed the limit."""
 
     limit: Fraction  # Force limit in N m
     # By disturbance: kept up to the first number, in the proportion in which the spec declares
@@ -66,7 +66,8 @@ class CommandMargin:
 class MarginBrackets:
     """Brackets of `--margin` beside the box of ranges."""
 
-    # Longest delay of the force sample, from the shortest declared one on; None without sampling.
+    # Longest delay of the force sample, for ranges that start at the shortest declared delay; None
+    # without sampling.
     delay: Bracket | None
     period: Bracket | None  # Periods, each for itself; None without sampling
     # None where no bound on the force is proved under the disturbances of the spec.

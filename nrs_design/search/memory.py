@@ -65,7 +65,7 @@ def words(system: SwitchedSystem, length: int) -> list[Word] | None:
 
 
 def count_words(system: SwitchedSystem, length: int) -> tuple[int, int] | None:
-    """Return the numbers of sequences of a length and of one more; None if too many."""
+    """Return the number of sequences, and the number of their extensions; None if too many."""
     if length > MOST_STEPS or (found := words(system, length)) is None:
         return None
     after = following(system)
@@ -207,7 +207,7 @@ def words_in_norms(
         if not free:
             ends = index[places[a]], index[places[b]], index[places[b]]
         if ends not in edge_of:
-            return  # It is a stay of several steps.
+            return  # The edge is a stay of several steps.
         rows.append((a, b, edge_of[ends]))
     order = np.argsort([a for a, *_ in rows], kind="stable")
     sources, targets, edges = np.array(rows)[order].T

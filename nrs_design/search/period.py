@@ -29,7 +29,7 @@ FEWEST_BITS = 8
 # Evaluations to refine the times of a cycle, and work of an evaluation for each jump.
 LOOKS = 600
 PER_LOOK = 4e-5
-# Share of the rest of the budget for words of single steps, or of stays on a grid.
+# Share of the remaining budget for words of single steps, or for words of stays on a grid.
 WORDS = 0.3
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 # Number of lengths of a stay; the shortest positive length, relative to the longest.

@@ -1,4 +1,4 @@
-"""The best decay rate of one form for all modes, and how it changes with the modes (untrusted).
+"""Best decay rate of a common quadratic form, with its derivative by the modes (untrusted).
 
 By the envelope theorem: forms and multipliers need not be found again for a small change. With W
 the dual variable of the inequality F of each edge, the margin changes by the sum of
@@ -156,7 +156,7 @@ def _best(
         own_rate = -inf if solution is None else _shown_rate(program, solution)
         if own_rate > rate:
             low, step = own_rate, min(FURTHER * (own_rate - rate), 2 * step)
-        else:  # What is solved, and does not show the rate itself, is a margin of the solver's.
+        else:  # A solution that does not show the rate has a margin within the error of the solver.
             high = rate
         if low is None:
             rate, step = rate - step, 2 * step

@@ -32,7 +32,7 @@ FEW_RATES = 3
 RATE_BITS = 16
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION, SMALLEST = 2.0**-14, 2.0**-40
-# Distance of the last position above the largest feasible one, relative to it.
+# Relative distance of the last position above the largest feasible position.
 OVERSHOOT = 2.0**-10
 # Few roundings with errors: more digits at once, as every check takes longer.
 ERROR_BITS = (24, 32, 40, 50, 60)

@@ -273,7 +273,7 @@ class _Search:
     T: Array
     loop: SaturatingLoop
     limit: float  # The fastest rate there is
-    stands: tuple[int, ...]  # Index of the equal of each mode of the whole system
+    stands: tuple[int, ...]  # Index of the similar mode for each mode of the whole system
     rounding: bool = False  # Whether rounding errors are covered
 
     def rate(self, position: float) -> float:
@@ -330,7 +330,7 @@ class _Search:
                 return held
             found = self.solve(held, rate, region.size, largest=True)
             if found is not None:
-                # With roundings, the solver ends a little beyond what is possible without them.
+                # With roundings, the solver may exceed the largest start without roundings.
                 return replace(held, size=region.size * min(1 / float(np.sqrt(found.last)), 1.0))
         return None
 
@@ -421,7 +421,7 @@ def search_saturated(
 def _coordinates(
     system: SwitchedSystem, family: Family, rate: float, allowance: Allowance
 ) -> Array | None:
-    """Return coordinates in which a form of the loop in which nothing is cut off is round.
+    """Return coordinates in which a form of the loop without saturation is the identity.
 
     They leave the deflection alone, which is zero in free motion.
     """

@@ -30,7 +30,7 @@ PER_PRODUCT = 3e-11
 # Predicted number of steps of the solver, and largest number.
 STEPS = 15
 MOST_STEPS = 200
-# Bytes for each entry of the dense constraints (with the copies), and of the factors.
+# Bytes for each entry of the dense constraints (with copies), and for each entry of the factors.
 BYTES_PER_ENTRY = 24
 BYTES_PER_FACTOR_ENTRY = 20
 
@@ -112,7 +112,7 @@ class Block:
 
     order: int
     constant: Array  # Shape (s,)
-    unknowns: NDArray[np.int64]  # Those that it depends on, shape (k,)
+    unknowns: NDArray[np.int64]  # Indices of the unknowns in the block, shape (k,)
     images: Array  # Shape (s, k)
 
 
@@ -161,7 +161,7 @@ class SemidefiniteProgram:
         ]
 
     def maximize(self, allowance: Allowance) -> Maximum | None:
-        """Return the solution, whatever its status; None if it is not finite.
+        """Return the solution with any status; None if an entry is not finite.
 
         The steps that it made are charged.
         """
@@ -190,7 +190,7 @@ class SemidefiniteProgram:
         problem = quadratic, objective, matrix, np.concatenate([b.constant for b in blocks]), cones
         solution = clarabel.DefaultSolver(*problem, settings).solve()
         if solution.status == clarabel.SolverStatus.NumericalError and solution.iterations < 2:
-            # It fails at once on a few programs that it has scaled, and solves them unscaled.
+            # The solver fails at once on a few scaled programs, and solves them without scaling.
             settings.equilibrate_enable = False
             solution = clarabel.DefaultSolver(*problem, settings).solve()
         allowance.charge((solution.iterations - STEPS) * cost.per_step)

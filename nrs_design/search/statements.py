@@ -1,4 +1,4 @@
-"""Searches for statements beside a proof of stability: bounds, and regions under saturation."""
+"""Searches for further statements: bounds, and regions of attraction under saturation."""
 
 from __future__ import annotations
 

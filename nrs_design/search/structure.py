@@ -18,7 +18,7 @@ Pattern = NDArray[np.bool_]
 
 
 def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
-    """Keep the first of every set of equal modes; the same system if there are none.
+    """Return the system without duplicate modes; the same object if all modes differ.
 
     Equal modes may differ in what disturbs them, so disturbances and outputs are left behind; with
     what the arithmetic adds to them, they are not equal.
@@ -65,7 +65,7 @@ def reachable(pattern: Pattern) -> Pattern:
 
 
 def _sources_first(driven_by: Pattern) -> list[int]:
-    """Order blocks so that each is driven by itself and later ones only."""
+    """Order the blocks so that a block depends only on the block itself and on later blocks."""
     remaining, order = set(range(len(driven_by))), []
     while remaining:
         # A block that drives no other remaining block comes next.

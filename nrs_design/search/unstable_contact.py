@@ -70,7 +70,7 @@ class _Loop:
     system: SwitchedSystem  # The exact one
     names: tuple[str, ...]  # Names of the distinct modes
     matrices: Array  # Shape (m, n, n). Scaled.
-    # touching, flying: shape (m,). Modes in which the environment acts, and those without it.
+    # touching, flying: shape (m,). Modes of contact, and modes of free motion.
     touching: NDArray[np.bool_]
     flying: NDArray[np.bool_]
     pulls: Array  # Shape (p, n). Forces.
@@ -176,7 +176,7 @@ class _Loop:
             value = np.where(guess, rng.uniform(size=value.shape), value)
             ahead = self.turns[turns[step]]
             possible = self.allowed(x) & (ahead != NOWHERE)
-            # Where no mode is on turn for these signs, any of the turn is followed.
+            # If no scheduled mode fits these signs, every scheduled mode is possible.
             possible |= ~possible.any(axis=1)[:, None] & (ahead != NOWHERE)
             choices[step] = np.where(possible, value, -np.inf).argmax(axis=1)
             x = images[np.arange(MOTIONS), choices[step]]
@@ -241,7 +241,7 @@ def _find_repeated_part(sequence: list[int]) -> list[int]:
 def _bracket(
     system: SwitchedSystem, steps: Steps, value: float
 ) -> tuple[Fraction, Fraction] | None:
-    """Enclose an eigenvalue between two near numbers; None if there is none near the value."""
+    """Return bounds of the eigenvalue near a value; None if no eigenvalue is found there."""
     limit = Fraction(system.time is Time.DISCRETE)
     low = max(Fraction(value * (1 - BRACKET_WIDTH)), limit)
     high = Fraction(value * (1 + BRACKET_WIDTH))

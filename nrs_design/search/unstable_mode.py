@@ -1,4 +1,4 @@
-"""Search for a mode that is not stable by itself: floating point says where to look first."""
+"""Search for an unstable mode: floating-point eigenvalues order the exact tests."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingS
 
 
 def find_unstable_corner(family: Family) -> str | None:
-    """Return an unstable corner of an enclosure by name; None if there is none."""
+    """Return the name of an unstable corner of an enclosure, or None."""
     system = family.system
     corners = {name for names in system.enclosures for name in names}
     suspicious = (mode for mode in _suspicious(family) if mode.name in corners)

@@ -29,7 +29,7 @@ ENCLOSED = "not tried: what the corners enclose need not be attained"
 # Values of a parameter that are tried, fewer where there are many modes or several parameters.
 GRID, COARSE_GRID, EVALUATIONS = 257, 33, 200_000
 FEWEST = 3
-# Local maxima of the growth that are looked at closely, and at how many values for each parameter.
+# Number of local maxima of the growth that are refined, and evaluations for each parameter.
 PEAKS, CLOSELY = 16, 120
 # Shorter shares first: they make shorter numbers in the certificate.
 DENOMINATORS = (1, 4, 16, 64, 256, 2**12, 2**20, 2**32, 2**48)
@@ -87,7 +87,7 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
         return "not tried: that takes two modes at each value, and no resets"
     if (count := _count(system)) is None:
         return ENCLOSED
-    # The periods of each value could take the whole budget.
+    # Searches for periods could use the whole budget.
     allowance = family.allowance.part(0.5)
     for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
         family_at_values = Family.of(system_at(system, shares), allowance)

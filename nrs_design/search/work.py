@@ -1,4 +1,4 @@
-"""How much work and memory something may take: work is counted, the same on every machine.
+"""Budgets of work and memory: work is counted, with equal counts on every machine.
 
 A unit of work is about a second of the machine that the benchmarks name. What is begun, and where a
 search ends, is decided by counts alone: factorizations, steps of a solver, matrices, boxes, each
@@ -91,7 +91,7 @@ class Allowance:
 
     @property
     def left(self) -> float:
-        """Remaining work; a part has at most the work of the whole."""
+        """Remaining work, limited by the remaining work of the parent."""
         remainder = max(0.0, self.work - self.charged)
         return remainder if self._parent is None else min(remainder, self._parent.left)
 

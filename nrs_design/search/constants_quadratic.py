@@ -81,7 +81,7 @@ class _Program:
         program, zero = SemidefiniteProgram(unknowns), np.zeros((2 * n, 2 * n))
         for k in range(corners):
             program.add(np.eye(n), [(k * size, -np.eye(size))])
-        functions = packed_columns(self._of_functions(basis, rate))
+        functions = packed_columns(self._function_forms(basis, rate))
         margin = unknowns - 1, packed_columns(-np.eye(2 * n)[None])
         for k in range(sets):
             at = corners * size + 2 * k * square

@@ -188,13 +188,13 @@ class Rung:
                 return
         if self.cost is None or system.order == 1:
             return
-        from nrs_design.search.polynomial import HELD, highest_degree
+        from nrs_design.search.polynomial import SIZE_LIMITS, highest_degree
 
         if highest < highest_degree(system.order):
             step = f"{self.name} of degree {2 * highest + 2}"
             yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
         else:
-            yield f"{self.name} of higher degree", _refuse(f"not tried: {HELD}")
+            yield f"{self.name} of higher degree", _refuse(f"not tried: {SIZE_LIMITS}")
 
 
 def _refuse(reason: str) -> Search:

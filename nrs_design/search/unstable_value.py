@@ -140,8 +140,8 @@ def _peaks(corners: Array, grid: Array, count: int, time: Time) -> list[tuple[in
         padding = [(0, 0)] * growth.ndim
         padding[axis] = (1, 1)
         padded = np.moveaxis(np.pad(growth, padding, constant_values=-np.inf), axis, 0)
-        axis_view = np.moveaxis(highest, axis, 0)
-        axis_view &= (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+        here = np.moveaxis(highest, axis, 0)
+        here &= (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
     places = np.argwhere(highest)
     largest = np.argsort(-growth[highest], kind="stable")[:PEAKS]
     return [(int(places[i][0]), grid[places[i][1:]]) for i in largest]

@@ -23,8 +23,8 @@ from nrs_design.models.contact import (
     AbstractContactLaw,
     KelvinBoltzmann,
     Maxwell,
-    Motion,
 )
+from nrs_design.models.contact.motion import Motion
 from nrs_design.proof.text import counted
 from tests.identification.synthetic import CONCHA, pressing, tissue_record
 from tests.identification.unilateral import push

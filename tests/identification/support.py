@@ -8,7 +8,8 @@ import numpy as np
 
 from nrs_design.identification.datasets.records import SignalRecord, TissueRecord
 from nrs_design.identification.tables.table import Source
-from nrs_design.models.contact import AbstractContactLaw, Motion
+from nrs_design.models.contact import AbstractContactLaw
+from nrs_design.models.contact.motion import Motion
 from tests.identification import synthetic
 from tests.identification.synthetic import Array
 from tests.support import ROOT

@@ -24,7 +24,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.models.contact import AbstractContactLaw, Elastic, KelvinBoltzmann, Motion
+from nrs_design.models.contact import AbstractContactLaw, Elastic, KelvinBoltzmann
+from nrs_design.models.contact.motion import Motion
 from nrs_design.output import write_output
 
 Array = NDArray[np.float64]

@@ -17,7 +17,8 @@ from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.pool import fit_model
 from nrs_design.identification.tissue.settings import Preparation
 from nrs_design.identification.tissue.trial import prepare
-from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
+from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact.motion import Motion
 from tests.identification import motors, synthetic
 from tests.identification.support import holds, quick, record, slow
 from tests.identification.unilateral import robot_record

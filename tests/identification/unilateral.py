@@ -18,8 +18,8 @@ from nrs_design.models.contact import (
     KelvinBoltzmann,
     KelvinVoigt,
     Maxwell,
-    Motion,
 )
+from nrs_design.models.contact.motion import Motion
 from tests.identification.support import source
 from tests.identification.synthetic import Array
 

@@ -23,10 +23,10 @@ from nrs_design.models.contact import (
     AbstractContactLaw,
     AbstractLinearLaw,
     AbstractNonlinearLaw,
-    Motion,
 )
 from nrs_design.models.contact.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
+from nrs_design.models.contact.motion import Motion
 
 # A coefficient that the linear fit would make zero or negative starts at this part of its scale.
 _FLOOR = 1e-3

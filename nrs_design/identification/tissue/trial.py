@@ -18,7 +18,7 @@ from nrs_design.identification.tissue.contact import (
     surface,
 )
 from nrs_design.identification.tissue.settings import Preparation
-from nrs_design.models.contact import Motion
+from nrs_design.models.contact.motion import Motion
 from nrs_design.proof.text import counted
 
 FEWEST = 50

@@ -13,7 +13,6 @@ from nrs_design.models.contact.law import (
     AbstractNonlinearLaw,
 )
 from nrs_design.models.contact.maxwell import Maxwell
-from nrs_design.models.contact.motion import Motion
 
 # Laws of tissue by name, the simplest first.
 LAWS: Mapping[str, type[AbstractContactLaw]] = {
@@ -42,5 +41,4 @@ __all__ = [
     "KelvinBoltzmann",
     "KelvinVoigt",
     "Maxwell",
-    "Motion",
 ]

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 from nrs_design.models.contact.law import AbstractNonlinearLaw, Solve
 
 if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
+    from nrs_design.models.contact.motion import Motion
+    from nrs_design.models.contact.relaxation import Array
 
 # The thesis takes phi between these, and then 1.2.
 LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3

@@ -18,7 +18,8 @@ from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordi
 from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
+    from nrs_design.models.contact.motion import Motion
+    from nrs_design.models.contact.relaxation import Array
 
 STIFFNESS, DAMPING, MASS = "stiffness", "damping", "mass"
 # Units of a linear motion and of a rotation about the pivot.

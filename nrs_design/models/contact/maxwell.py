@@ -25,7 +25,8 @@ from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.assumption import Assumption
 
 if TYPE_CHECKING:
-    from nrs_design.models.contact.motion import Array, Motion
+    from nrs_design.models.contact.motion import Motion
+    from nrs_design.models.contact.relaxation import Array
 
 
 @dataclass(frozen=True)

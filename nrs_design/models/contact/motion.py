@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+import numpy as np
 
-    from nrs_design.models.contact.relaxation import Relaxation
-
-    Array = NDArray[np.float64]
+from nrs_design.models.contact.relaxation import Array, Relaxation
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,44 +29,32 @@ class Motion:
     @cached_property
     def steps(self) -> Array:
         """Time from each sample to the next, shape (n - 1,), in s."""
-        import numpy as np
-
         return np.diff(self.time)
 
     @cached_property
     def increments(self) -> Array:
         """Change of the deflection from each sample to the next, shape (n - 1,)."""
-        import numpy as np
-
         return np.diff(self.deflection)
 
     @cached_property
     def velocity(self) -> Array:
         """Velocity at the samples, shape (n,): second-order differences, per s."""
-        import numpy as np
-
         order: Literal[1, 2] = 2 if len(self) > 2 else 1
         return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)
 
     @cached_property
     def derivatives(self) -> tuple[Array, Array, Array]:
         """Deflection, velocity and acceleration at the samples, each of shape (n,)."""
-        import numpy as np
-
         return self.deflection, self.velocity, np.gradient(self.velocity, self.time)
 
     @property
     def time_constants(self) -> Array:
         """Time constants in s that a record may tell, from short to long."""
-        import numpy as np
-
         duration = float(self.time[-1] - self.time[0])
         return np.geomspace(2 * float(np.median(self.steps)), 5 * duration, 9)
 
     def relaxed(self, time_constant: float) -> Relaxation:
         """Return the response of a spring and a damper in a row; time constant in s."""
-        from nrs_design.models.contact.relaxation import Relaxation
-
         return Relaxation(self.steps, self.increments, time_constant)
 
     def translate(self, shift: float) -> Motion:

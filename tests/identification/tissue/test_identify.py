@@ -10,7 +10,8 @@ from nrs_design.identification.statistics import student_quantile
 from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.tissue.pool import fit_model
 from nrs_design.identification.tissue.trial import prepare
-from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
+from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact.motion import Motion
 from tests.identification import synthetic
 from tests.identification.support import holds, quick, record, slow
 

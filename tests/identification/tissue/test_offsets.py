@@ -10,7 +10,8 @@ from nrs_design.identification.tissue.identify import identify_tissue
 from nrs_design.identification.tissue.output_error import fit_record
 from nrs_design.identification.tissue.settings import Preparation
 from nrs_design.identification.tissue.trial import prepare
-from nrs_design.models.contact import Elastic, HuntCrossley, KelvinBoltzmann, KelvinVoigt, Motion
+from nrs_design.models.contact import Elastic, HuntCrossley, KelvinBoltzmann, KelvinVoigt
+from nrs_design.models.contact.motion import Motion
 from tests.identification import synthetic
 from tests.identification.support import holds, quick, record, slow, source
 from tests.identification.unilateral import robot_record

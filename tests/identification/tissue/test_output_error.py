@@ -17,8 +17,8 @@ from nrs_design.models.contact import (
     KelvinBoltzmann,
     KelvinVoigt,
     Maxwell,
-    Motion,
 )
+from nrs_design.models.contact.motion import Motion
 from tests.identification import synthetic
 from tests.identification.support import holds, quick, record, slow, source
 from tests.identification.unilateral import robot_record

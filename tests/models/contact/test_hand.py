@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import AssemblyError, DesignError, InternalError
-from nrs_design.models.contact import Hand, KelvinVoigt, Motion
+from nrs_design.models.contact import Hand, KelvinVoigt
 from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.contact.motion import Motion
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import coordinates
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from nrs_design.models.contact import HuntCrossley, Motion
+from nrs_design.models.contact import HuntCrossley
+from nrs_design.models.contact.motion import Motion
 
 NOSE = HuntCrossley(rho=0.28, lam=15.328, phi=1.2)  # thesis table 2.4
 

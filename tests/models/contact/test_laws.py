@@ -19,9 +19,9 @@ from nrs_design.models.contact import (
     KelvinBoltzmann,
     KelvinVoigt,
     Maxwell,
-    Motion,
 )
 from nrs_design.models.contact.law import AbstractLinearLaw, AbstractMemorylessLaw
+from nrs_design.models.contact.motion import Motion
 from nrs_design.models.linear_form import combine, coordinates
 from tests.identification.support import wobble
 

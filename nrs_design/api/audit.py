@@ -44,15 +44,15 @@ class Audit(AbstractResult):
         return dict(self.facts)
 
     def _headline(self) -> str:
-        made = ", SYNTHETIC data" if self.synthetic else ""
+        data_note = ", SYNTHETIC data" if self.synthetic else ""
         unproved = ", UNPROVED SPEC" if self.unproved_because else ""
-        return f"{self.name}: {self.verdict}{made}{unproved}"
+        return f"{self.name}: {self.verdict}{data_note}{unproved}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
         yield "check", "outcome", "measured", "allowed", "first at s"
         for check in self.checks:
-            when = "" if check.time is None else f"{check.time:.6g}"
-            yield check.name, check.status, check.measured, check.allowed, when
+            time_text = "" if check.time is None else f"{check.time:.6g}"
+            yield check.name, check.status, check.measured, check.allowed, time_text
 
     def __bool__(self) -> bool:
         """Whether the run stayed inside; an open question does not count."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.api.proof_facts import blocked_facts, certification_facts, margins_facts
-from nrs_design.api.result import AbstractResult, Figures, drawn, evidence_drawings
+from nrs_design.api.result import AbstractResult, Figures, evidence_drawings, section_figures
 from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.ownership import check_certificate, write_certificate
 from nrs_design.errors import OutputError, SpecError
@@ -64,8 +64,8 @@ class Further:
 
             yield from (f"  {line}" for line in blocked_lines(self.blocked, loaded.path))
         # The most promising step alone, where nothing better was said.
-        shown = self.steps if verbose else () if is_helped or self.relief else self.steps[:1]
-        yield from (f"next: {line}" for line in shown)
+        steps = self.steps if verbose else () if is_helped or self.relief else self.steps[:1]
+        yield from (f"next: {line}" for line in steps)
 
 
 @dataclass(frozen=True, repr=False)
@@ -185,15 +185,19 @@ class Decision(AbstractResult):
 
     def _drawings(self) -> Figures:
         # The run with its bound comes first; figures of the design take longer.
-        seen = set()
+        names = set()
         for name, draw in evidence_drawings(self.result.certification):
-            seen.add(name)
+            names.add(name)
             yield name, draw
-        yield from ((name, draw) for name, draw in drawn(self._page().sections) if name not in seen)
+        yield from (
+            (name, draw)
+            for name, draw in section_figures(self._page().sections)
+            if name not in names
+        )
 
     def _headline(self) -> str:
-        where = "" if self.refuted_in is None else f" (refuted {self.refuted_in})"
-        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}{where}"
+        contact_note = "" if self.refuted_in is None else f" (refuted {self.refuted_in})"
+        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}{contact_note}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
         yield "", ""
@@ -257,8 +261,8 @@ class Decision(AbstractResult):
     def _repr_html_(self) -> str:
         """Show verdict, claim and assumptions in a notebook."""
         items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
-        granted = f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
-        return super()._repr_html_() + granted
+        details = f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
+        return super()._repr_html_() + details
 
 
 def _holds(path: Path, loaded: LoadedSpec) -> bool:

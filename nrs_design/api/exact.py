@@ -22,12 +22,12 @@ MAX_DENOMINATOR_BITS = 2048
 
 def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
     """Read a matrix as exact rows: NumPy, lists of numbers or texts, or a state space's A."""
-    held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
-    rows = held.tolist() if hasattr(held, "tolist") else held
+    array = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
+    rows = array.tolist() if hasattr(array, "tolist") else array
     if not isinstance(rows, Sequence) or isinstance(rows, str) or not rows:
-        raise _no_matrix(name, held)
+        raise _no_matrix(name, array)
     if any(not isinstance(row, Sequence) or isinstance(row, str) for row in rows):
-        raise _no_matrix(name, held)
+        raise _no_matrix(name, array)
     if any(len(row) != len(rows[0]) or not row for row in rows):
         raise SpecError(
             f"{name} has rows of different lengths", remedy="give all rows the same length"
@@ -88,23 +88,23 @@ def time_of(modes: Sequence[object], time: str | None) -> Time:
         )
     periods: list[Any] = [getattr(mode, "dt", None) for mode in modes if is_state_space(mode)]
     known = [period for period in periods if period is not None]
-    said = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
+    domains = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
     # True is a step of any length, though it equals one second.
     steps = {period for period in known if period is not True}
     if time is not None:
-        said.add(Time(time))
-    if len(said) > 1 or len(steps) > 1:
+        domains.add(Time(time))
+    if len(domains) > 1 or len(steps) > 1:
         raise SpecError(
             "the modes are not of one time axis",
             remedy="give state spaces of one sample time dt, and the same time if it is given too",
         )
-    return said.pop() if said else Time.CONTINUOUS
+    return domains.pop() if domains else Time.CONTINUOUS
 
 
-def _no_matrix(name: str, held: object) -> SpecError:
+def _no_matrix(name: str, value: object) -> SpecError:
     remedy = "give rows of numbers"
-    if hasattr(held, "dt"):
+    if hasattr(value, "dt"):
         remedy = "of a system, give the state space: control.ss(system)"
-    elif hasattr(held, "value"):
+    elif hasattr(value, "value"):
         remedy = "of a variable of CVXPY, give its .value"
     return SpecError(f"{name} is not a matrix", remedy=remedy)

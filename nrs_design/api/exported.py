@@ -61,15 +61,15 @@ class Exported(AbstractResult):
         ``NAME.cert.json`` is beside them. A DesignError if nothing may be exported, or a processor
         is to run what is proved in continuous time only.
         """
-        chosen, place, record = known_format(format), Path(folder), self.export.shipped()
-        if chosen.executable and record.sample_time is None:
+        file_format, place, record = known_format(format), Path(folder), self.export.shipped()
+        if file_format.executable and record.sample_time is None:
             raise DesignError(
                 "the proof is in continuous time, and a processor runs this format",
                 remedy="add `sampling: {period: 2 ms, delay: 1}` to the spec",
             )
-        files = places(chosen, self.name, place)
+        files = places(file_format, self.name, place)
         proof = next(iter(files.values())).parent / f"{self.name}.cert.json"
-        check_places(chosen, files, self.name)
+        check_places(file_format, files, self.name)
         check_certificate(self.loaded.path, proof)
         with placed(self.loaded):
             write_export(self.export, format, files, proof, self.loaded.path)

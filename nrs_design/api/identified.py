@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from nrs_design.api.result import AbstractResult, Figures, drawn
+from nrs_design.api.result import AbstractResult, Figures, section_figures
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.wings import load_wing
 
@@ -57,13 +57,13 @@ class Identification(AbstractResult):
         return dict(self.facts)
 
     def _drawings(self) -> Figures:
-        return drawn(self.page().sections)
+        return section_figures(self.page().sections)
 
     def _headline(self) -> str:
-        made = "SYNTHETIC data, " if self.synthetic else ""
+        data_note = "SYNTHETIC data, " if self.synthetic else ""
         count = len(self.doubts)
         doubts = f"{count} doubt{'s' * (count != 1)}" if count else "no doubts"
-        return f"{self.kind}: {self.chosen}, {made}{doubts}"
+        return f"{self.kind}: {self.chosen}, {data_note}{doubts}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
         yield "", "value [95 % interval]"

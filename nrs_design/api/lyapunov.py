@@ -105,14 +105,14 @@ class LyapunovCheck(AbstractResult):
         }
 
     def _headline(self) -> str:
-        asked = "" if self.asked is None else " at the rate asked for"
-        return f"x' P x {'holds' if self.holds else 'does not hold'}{asked}"
+        rate_note = "" if self.asked is None else " at the rate asked for"
+        return f"x' P x {'holds' if self.holds else 'does not hold'}{rate_note}"
 
     def lines(self) -> Iterator[str]:
         """Yield the decision and its reason in words."""
         from nrs_design.proof.evidence.fields import rate_words
 
-        asked, law = self.asked is not None, _LAW[self.time]
+        is_requested, law = self.asked is not None, _LAW[self.time]
         best = None if self.rate is None else rate_words(self.rate, self.time)
         if self.holds:
             yield (
@@ -122,17 +122,17 @@ class LyapunovCheck(AbstractResult):
             if best is None:
                 yield "the numbers are too large to look for its rate: ask for one"
             else:
-                yield f"{'the rate asked for' if asked else 'proved'}: {best}"
+                yield f"{'the rate asked for' if is_requested else 'proved'}: {best}"
             return
-        too_slowly = " at this rate" * asked
+        too_slowly = " at this rate" * is_requested
         yield f"DOES NOT HOLD: x' P x is not a common Lyapunov function{too_slowly}"
         if (failing := self.counterexample) is not None:
-            value, *vector = map(_written, (failing.value, *failing.vector))
+            value, *vector = map(_format_number, (failing.value, *failing.vector))
             if failing.mode is None:
                 yield f"P is not positive definite: x' P x = {value}"
             else:
                 yield f"in mode {failing.mode} it does not decrease{too_slowly}:"
-                yield f"{_CHANGE[self.time, asked]} = {value}, which is not below zero,"
+                yield f"{_CHANGE[self.time, is_requested]} = {value}, which is not below zero,"
             yield f"at x = ({', '.join(vector)})"
         if best is not None:
             yield f"along {law} it decreases strictly in every mode, proved at {best} only"
@@ -165,12 +165,12 @@ def check_quadratic(
     still = Fraction(int(time is Time.DISCRETE))
     if rate is not None and (rate < 0 or (time is Time.DISCRETE and not 0 < rate <= 1)):
         raise ValueError("a rate of decay is not negative, and in discrete time in (0, 1]")
-    asked = still if rate is None else rate
-    work = _work(modes, P, time, asked)
+    requested = still if rate is None else rate
+    work = _work(modes, P, time, requested)
     if work > MAX_WORK // 2:
         raise TooLargeError("the matrices are too large, or their numbers too long, to decide")
     affordable = DECISIONS * work <= 4 * MAX_WORK
-    for mode, form in _forms(modes, P, time, asked):
+    for mode, form in _forms(modes, P, time, requested):
         if not is_positive_definite(_integers(form)):
             first, *others = (_integers(M) for _, M in _forms(modes, P, time, still))
             positive = is_positive_definite(first)
@@ -231,11 +231,11 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
     V decreases strictly in finitely many modes, so halving ends at a rate that is proved.
     """
 
-    def rate_at(decay: Fraction) -> Fraction:
+    def convert_decay(decay: Fraction) -> Fraction:
         return decay if time is Time.CONTINUOUS else 1 - decay
 
     def is_proved(decay: Fraction) -> bool:
-        forms = _forms(modes, P, time, rate_at(decay))
+        forms = _forms(modes, P, time, convert_decay(decay))
         return all(is_positive_definite(_integers(form)) for _, form in forms)
 
     low = _decay_bound(modes, P) if time is Time.CONTINUOUS else Fraction(1, 2)
@@ -245,7 +245,7 @@ def _best_rate(modes: Sequence[Mode], P: RationalMatrix, time: Time) -> Fraction
     for _ in range(RATE_BITS):
         middle = (low + high) / 2
         low, high = (middle, high) if is_proved(middle) else (low, middle)
-    return rate_at(low)
+    return convert_decay(low)
 
 
 def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
@@ -260,13 +260,13 @@ def _decay_bound(modes: Sequence[Mode], P: RationalMatrix) -> Fraction:
 
 def _counterexample(mode: Mode | None, form: fmpq_mat) -> Counterexample:
     """Return a vector at which a form is not positive, and the value of the condition there."""
-    vector = _shortened(indefinite_vector(form), form)
+    vector = _shorten_vector(indefinite_vector(form), form)
     value = _value(form, vector)
     name, value = (None, value) if mode is None else (mode.name, -value)
     return Counterexample(name, vector, value)
 
 
-def _shortened(vector: tuple[Fraction, ...], M: fmpq_mat) -> tuple[Fraction, ...]:
+def _shorten_vector(vector: tuple[Fraction, ...], M: fmpq_mat) -> tuple[Fraction, ...]:
     """Return a nearby vector of few digits with the same sign, else the given vector."""
     largest = max(map(abs, vector))
     for digits in DIGITS:
@@ -308,7 +308,7 @@ def indefinite_vector(M: fmpq_mat) -> tuple[Fraction, ...]:
     raise ValueError("the matrix is positive definite")
 
 
-def _written(number: Fraction) -> str:
+def _format_number(number: Fraction) -> str:
     from nrs_design.proof.bounds import nearly
 
     text = str(number)

@@ -122,9 +122,9 @@ def check_lyapunov(
     >>> nrs.check_lyapunov([[[0, 1], [-2, -3]]], [[5, 1], [1, 1]]).holds
     True
     """
-    named = name_modes(modes)
-    axis = time_of(list(named.values()), time)
-    exact = [Mode(label, read_matrix(A, f"mode {label}")) for label, A in named.items()]
+    matrices = name_modes(modes)
+    axis = time_of(list(matrices.values()), time)
+    exact = [Mode(label, read_matrix(A, f"mode {label}")) for label, A in matrices.items()]
     alpha = None if rate is None else read_number(rate, "rate")
     try:
         return check_quadratic(exact, _symmetric_part(P), axis, alpha)

@@ -33,8 +33,8 @@ def spec_of_matrices(
     parameters: Mapping[str, object] | None = None,
 ) -> LoadedSpec:
     """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`."""
-    named = name_modes(modes)
-    axis = time_of(list(named.values()), time)
+    matrices = name_modes(modes)
+    axis = time_of(list(matrices.values()), time)
     unit = "s" if axis == "continuous" else "steps"
     times = {"dwell_time": dwell_time, "longest_dwell_time": longest_dwell_time}
     uncertain = bool(parameters)
@@ -44,7 +44,7 @@ def spec_of_matrices(
         "time": str(axis),
         "modes": [
             {"name": str(label), "A": _entries(A, str(label), uncertain)}
-            for label, A in named.items()
+            for label, A in matrices.items()
         ],
         "switching": _switching(times, transitions, unit),
     }
@@ -61,16 +61,16 @@ def name_modes(modes: Sequence[object] | Mapping[str, object]) -> dict[str, obje
         remedy = "nrs_design.load(path).certify() is for the file of a spec"
         raise SpecError("the modes are a text, not a list of matrices", remedy=remedy)
     if isinstance(modes, Mapping):
-        named = dict(modes)
+        matrices = dict(modes)
     elif is_state_space(modes) or _depth(modes) == 2:
         raise SpecError("the modes are one matrix", remedy="put it into a list: [A]")
     elif not isinstance(modes, Iterable):
         raise SpecError("the modes are not a list of matrices", remedy="write [A1, A2]")
     else:
-        named = {f"m{index + 1}": mode for index, mode in enumerate(modes)}
-    if not named:
+        matrices = {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+    if not matrices:
         raise SpecError("no modes are given", remedy="give at least one matrix")
-    return named
+    return matrices
 
 
 def _entries(matrix: object, label: str, uncertain: bool) -> list[list[str]]:
@@ -108,12 +108,12 @@ def _several(maps: object) -> list[object]:
     return [maps]
 
 
-def _depth(held: object) -> int:
+def _depth(value: object) -> int:
     """Return how deep lists or arrays are nested: 1 for a row, 2 for a matrix."""
-    dimensions = getattr(held, "ndim", None)
+    dimensions = getattr(value, "ndim", None)
     if dimensions is not None:
         return int(dimensions)
-    return 1 + _depth(held[0]) if isinstance(held, list | tuple) and held else 0
+    return 1 + _depth(value[0]) if isinstance(value, list | tuple) and value else 0
 
 
 def _switching(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.api.result import AbstractResult, Figures, drawn
+from nrs_design.api.result import AbstractResult, Figures, section_figures
 from nrs_design.models.axis import unit
 from nrs_design.pipeline.design import Designed, run_analysis
 from nrs_design.proof.bounds import lower_float, upper_float
@@ -74,7 +74,7 @@ class Optimum(AbstractResult):
         from nrs_design.reporting.sections.design import design_sections
 
         sections = design_sections(self.designed, self.analysis)
-        return drawn(sections, "displayed-impedance")
+        return section_figures(sections, "displayed-impedance")
 
     def gain_rows(self) -> Iterator[tuple[str, str, str, str]]:
         """Return controller, gain, value and unit of each gain."""
@@ -113,8 +113,8 @@ class Optimum(AbstractResult):
                 lines.append(f"{name}: no gain, the motion loop alone")
                 continue
             units = self.units[name]
-            shown = (f"{gain} = {value:.6g} {units[gain]}" for gain, value in gains.items())
-            lines.append(f"{name}: {', '.join(text.rstrip() for text in shown)}")
+            gain_texts = (f"{gain} = {value:.6g} {units[gain]}" for gain, value in gains.items())
+            lines.append(f"{name}: {', '.join(text.rstrip() for text in gain_texts)}")
         return "\n".join(lines)
 
 
@@ -194,20 +194,20 @@ def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:
     return [_goal(found) for found in item.judged]
 
 
-def _goal(found: Achieved) -> dict[str, Any]:
-    measure = found.measure
+def _goal(achievement: Achieved) -> dict[str, Any]:
+    measure = achievement.measure
     unfavorable = upper_float if measure.upper else lower_float
     return {
         "goal": measure.goal,
-        "wanted": found.goal,
+        "wanted": achievement.goal,
         # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
         # what is not computed, as `at` then says.
-        "worst": finite(found.value),
+        "worst": finite(achievement.value),
         # What no constant values in the ranges are worse than; null is not shown.
-        "proved": None if found.proved is None else unfavorable(found.proved),
+        "proved": None if achievement.proved is None else unfavorable(achievement.proved),
         "unit": measure.si_unit,
-        "at": found.where,
-        "status": None if found.goal is None else str(found.standing),
+        "at": achievement.where,
+        "status": None if achievement.goal is None else str(achievement.standing),
     }
 
 

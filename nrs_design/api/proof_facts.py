@@ -106,10 +106,10 @@ def loop_facts(margins: MarginBrackets) -> Facts:
                 {
                     "name": name,
                     "unit": unit,
-                    "kept_up_to": lower_float(kept),
+                    "kept_up_to": lower_float(proved),
                     "broken_in_simulation_at": upper_float(broken),
                 }
-                for name, (kept, broken, unit) in margins.command.bounds.items()
+                for name, (proved, broken, unit) in margins.command.bounds.items()
             ],
         }
     return content
@@ -157,7 +157,7 @@ def _ends(bracket: Bracket) -> Facts:
     }
 
 
-def _number(name: str, number: Fraction | None, rounded: Callable[[Fraction], float]) -> Facts:
+def _number(name: str, number: Fraction | None, round_number: Callable[[Fraction], float]) -> Facts:
     """Return a number as a double on its safe side, and exactly."""
-    exact, double = (None, None) if number is None else (str(number), rounded(number))
+    exact, double = (None, None) if number is None else (str(number), round_number(number))
     return {name: double, f"{name}_exact": exact}

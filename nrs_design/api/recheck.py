@@ -38,14 +38,18 @@ class Recheck(AbstractResult):
     @property
     def verdict(self) -> str:
         """``rejected``; of a valid certificate, what it shows."""
-        kept = self._valid()
-        return "rejected" if kept is None else kept.verdict
+        certificate = self._valid()
+        return "rejected" if certificate is None else certificate.verdict
 
     @property
     def claims(self) -> tuple[str, ...]:
         """Claims in words; empty for a rejected certificate."""
-        kept = self._valid()
-        return () if kept is None else tuple(s.claim(kept.system) for s in kept.statements)
+        certificate = self._valid()
+        return (
+            ()
+            if certificate is None
+            else tuple(s.claim(certificate.system) for s in certificate.statements)
+        )
 
     def _axis(self) -> object:
         return None if self.certificate is None else find_axis(self.certificate.system.states)
@@ -53,18 +57,18 @@ class Recheck(AbstractResult):
     def _facts(self) -> dict[str, Any]:
         from nrs_design.certificates.units import gain_units
 
-        kept = self._valid()
-        compared = kept if self.spec is not None else None
+        certificate = self._valid()
+        compared = certificate if self.spec is not None else None
         return {
             "verdict": self.verdict,
-            "refuted_in": kept.refuted_in if kept else None,
+            "refuted_in": certificate.refuted_in if certificate else None,
             "fault": self.fault,
-            "claims": None if kept is None else list(self.claims),
+            "claims": None if certificate is None else list(self.claims),
             "gains": dict(compared.gains) if compared else None,
             "gain_units": gain_units(compared) if compared else None,
             "assumptions": list(sentences(compared.granted)) if compared else None,
             "certificate": str(self.file),
-            "certificate_id": kept.id if kept else None,
+            "certificate_id": certificate.id if certificate else None,
             "spec": None if self.spec is None else str(self.spec),
         }
 
@@ -78,8 +82,8 @@ class Recheck(AbstractResult):
         return evidence_drawings(recorded_certification(kept, self.file))
 
     def _headline(self) -> str:
-        where = "" if self.spec is None else f" for {self.spec.name}"
-        return f"{self.file.name}{where}: {self.verdict}"
+        spec_note = "" if self.spec is None else f" for {self.spec.name}"
+        return f"{self.file.name}{spec_note}: {self.verdict}"
 
     def _rows(self) -> Iterator[Sequence[str]]:
         yield "", ""

@@ -76,14 +76,16 @@ class AbstractResult(ABC):
         if width is not None and width not in WIDTHS:
             raise DesignError(f"there is no width {width!r}", remedy=f"{' or '.join(WIDTHS)}")
         with axis_context(self._axis()), for_paper(None if width is None else WIDTHS[width]):
-            seen = []
+            names = []
             for known, draw in self._drawings():
                 if name in (None, known):
                     return draw()
-                seen.append(known)
-        if not seen:
+                names.append(known)
+        if not names:
             raise DesignError("there is nothing to draw", remedy=self._headline())
-        raise DesignError(f"there is no figure {name!r}", remedy=f"figures here: {', '.join(seen)}")
+        raise DesignError(
+            f"there is no figure {name!r}", remedy=f"figures here: {', '.join(names)}"
+        )
 
     def _table(self) -> list[Sequence[str]]:
         with axis_context(self._axis()):
@@ -96,7 +98,7 @@ class AbstractResult(ABC):
     def __str__(self) -> str:
         """Return the summary and the rows."""
         heads, *rows = self._table()
-        lines = [f"{row[0]}: {', '.join(_named(heads, row))}" for row in rows]
+        lines = [f"{row[0]}: {', '.join(_label_cells(heads, row))}" for row in rows]
         return "\n".join([self._headline(), *(f"  {line}" for line in lines)])
 
     def _repr_html_(self) -> str:
@@ -109,7 +111,7 @@ class AbstractResult(ABC):
         return f"<p><strong>{escape(self._headline())}</strong></p>{table}"
 
 
-def drawn(sections: Iterable[Section], first: str = "") -> Figures:
+def section_figures(sections: Iterable[Section], first: str = "") -> Figures:
     """Return the figures of sections, which are drawn already, the one of a name first."""
     found = [item for section in sections for item in section.illustrations]
     found.sort(key=lambda item: item.name != first)
@@ -120,10 +122,10 @@ def evidence_drawings(certification: Certification) -> Figures:
     """Return the figures of the evidence; a run with its bound comes first."""
     from nrs_design.reporting.evidence import evidence_sections
 
-    return drawn(evidence_sections(certification), "run")
+    return section_figures(evidence_sections(certification), "run")
 
 
-def _named(heads: Sequence[str], row: Sequence[str]) -> list[str]:
+def _label_cells(heads: Sequence[str], row: Sequence[str]) -> list[str]:
     """Return the other cells of a row that say something, each after its head."""
-    named = zip(heads[1:], row[1:], strict=True)
-    return [f"{head} {cell}".strip() for head, cell in named if cell]
+    cells = zip(heads[1:], row[1:], strict=True)
+    return [f"{head} {cell}".strip() for head, cell in cells if cell]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.time_response import Signal, TimeResponse
 
 # Metrics in the table of a run, with the units on a rotary axis.
-_SHOWN = (
+_TABLE_METRICS = (
     ("peak_torque", "N*m"),
     ("peak_velocity", "rad/s"),
     ("peak_depth", "rad"),
@@ -112,8 +112,8 @@ class ScenarioRun(AbstractResult):
             "limits": dict(self.scenario.limits),
             "switches": [{"time": time, "to": name} for time, name in run.switches],
             "contacts": [
-                {"time": time, "environment": name, "made": made}
-                for time, name, made in run.contacts
+                {"time": time, "environment": name, "made": is_made}
+                for time, name, is_made in run.contacts
             ],
             "certified_bounds": [
                 {
@@ -145,13 +145,13 @@ class ScenarioRun(AbstractResult):
         from nrs_design.simulation.run import common_lever_arm
 
         spec = self.designed.spec
-        touched = [surface.environment for surface in self.scenario.surfaces]
+        environments = [surface.environment for surface in self.scenario.surfaces]
         level = next(((b.level, not b.uncovered) for b in self.bounds if b.output == "force"), None)
         return draw_simulated(
             self.response,
             spec.limits.torque.si,
             spec.limits.velocity.si,
-            common_lever_arm(spec, touched),
+            common_lever_arm(spec, environments),
             level,
         )
 
@@ -175,21 +175,21 @@ class Simulation(AbstractResult):
 
     @classmethod
     def of(
-        cls, designed: Designed, found: Sequence[Simulated], proof: Certificate | None
+        cls, designed: Designed, simulated: Sequence[Simulated], proof: Certificate | None
     ) -> Simulation:
         """Return the runs, beside what is certified.
 
         Parameters
         ----------
-        designed, found, proof
+        designed, simulated, proof
             The spec and its gains, its runs, and a certificate that was checked against the spec.
         """
         from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
 
         if proof is None:
-            return cls(designed, tuple(ScenarioRun(designed, run) for run in found))
+            return cls(designed, tuple(ScenarioRun(designed, run) for run in simulated))
         runs = []
-        for run in found:
+        for run in simulated:
             bounds = hold_bounds(designed, proof, run)
             runs.append(ScenarioRun(designed, run, bounds, hold_rate(designed, proof, run)))
         return cls(designed, tuple(runs))
@@ -206,11 +206,11 @@ class Simulation(AbstractResult):
         """Return a run by its place or by the name of its scenario."""
         if not isinstance(key, str):
             return self.runs[key]
-        named = {one.name: one for one in self.runs}
-        if key not in named:
-            remedy = f"scenarios here: {', '.join(named)}"
+        runs_by_name = {one.name: one for one in self.runs}
+        if key not in runs_by_name:
+            remedy = f"scenarios here: {', '.join(runs_by_name)}"
             raise DesignError(f"there is no run of {key!r}", remedy=remedy)
-        return named[key]
+        return runs_by_name[key]
 
     def _axis(self) -> object:
         return self.designed.spec.axis
@@ -229,10 +229,10 @@ class Simulation(AbstractResult):
     def _rows(self) -> Iterator[Sequence[str]]:
         from nrs_design.reporting.simulation import four_digits_up
 
-        yield "run", *(f"{name.replace('_', ' ')}" for name, _ in _SHOWN), "stopped"
+        yield "run", *(f"{name.replace('_', ' ')}" for name, _ in _TABLE_METRICS), "stopped"
         for one in self.runs:
-            shown = (
+            values = (
                 f"{four_digits_up(float(one.metrics[name]))} {unit(turning)}".rstrip()
-                for name, turning in _SHOWN
+                for name, turning in _TABLE_METRICS
             )
-            yield one.name, *shown, one.run.stopped or ""
+            yield one.name, *values, one.run.stopped or ""

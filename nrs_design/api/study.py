@@ -89,8 +89,8 @@ class Study:
         """
         file = None if certificate is None else Path(certificate)
         library = load_wing("identification", "api.library")
-        judged: Audit = library.judge_log(Path(log), self.loaded, file)
-        return judged
+        audit_result: Audit = library.judge_log(Path(log), self.loaded, file)
+        return audit_result
 
     def state_spaces(self) -> StateSpaces:
         """Design, and return actuator, motion loop and controllers for python-control.
@@ -164,10 +164,10 @@ class Study:
         """
         from nrs_design.pipeline.scenarios import run_scenarios
 
-        wanted = _runs(scenarios, engine, period, delay)
+        settings = _runs(scenarios, engine, period, delay)
         with placed(self.loaded):
             designed, proof = self._interaction(certificate)
-            return Simulation.of(designed, tuple(run_scenarios(designed, wanted)), proof)
+            return Simulation.of(designed, tuple(run_scenarios(designed, settings)), proof)
 
     def worst_case(self, certificate: str | Path | None = None) -> WorstFound:
         """Let an adversary choose all that the spec leaves open, and return his worst runs.

@@ -50,11 +50,13 @@ def _refuse_little_memory() -> None:
         return
     import resource
 
-    allowed = resource.getrlimit(resource.RLIMIT_AS)[0]
-    if 0 <= allowed < LEAST_MEMORY:
-        few, least = allowed // 2**20, LEAST_MEMORY // 2**20
-        said = f"{few} MiB of memory are allowed, and {least} MiB are needed (ulimit -v)"
-        _end(f"error: {said}", exit_codes.USAGE)
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if 0 <= limit < LEAST_MEMORY:
+        available, required = limit // 2**20, LEAST_MEMORY // 2**20
+        message = (
+            f"{available} MiB of memory are allowed, and {required} MiB are needed (ulimit -v)"
+        )
+        _end(f"error: {message}", exit_codes.USAGE)
 
 
 def _end(message: str, code: int) -> NoReturn:

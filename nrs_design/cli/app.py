@@ -136,8 +136,8 @@ def _root(
 
 def _run() -> None:
     """Run the command and flush stdout, so that an undelivered verdict is not a success."""
-    named = sys.argv[1:2]
-    app = make_app(named if set(named) & set(COMMANDS) else COMMANDS)
+    command_names = sys.argv[1:2]
+    app = make_app(command_names if set(command_names) & set(COMMANDS) else COMMANDS)
     try:
         app()
     finally:

@@ -77,13 +77,13 @@ def certify_switching(
         for line in decision.lines(verbose=wants_details()):
             say(line, verdict=verdict if verdict.upper() in line else "")
         print_granted(result)
-    asked = {"margin": margin, "shortest_dwell": shortest_dwell}
+    searches = {"margin": margin, "shortest_dwell": shortest_dwell}
     further = Further(
         # One rung alone may be at a loss for what others prove.
         blocked=_find_blocked(result, limits) if method is Method.AUTO else None,
-        margins=_find_margins(result, limits, asked),
+        margins=_find_margins(result, limits, searches),
         relief=find_relief(result),
-        steps=_next_steps(result, asked),
+        steps=_next_steps(result, searches),
     )
     decision = replace(decision, further=further)
 
@@ -91,7 +91,7 @@ def certify_switching(
         for line in further.lines(loaded, verbose=wants_details()):
             say(line)
 
-    return Answer(decision.to_dict, show, exit_codes.OF_VERDICT[verdict])
+    return Answer(decision.to_dict, show, exit_codes.VERDICT_CODES[verdict])
 
 
 def _find_blocked(result: Result, limits: Limits) -> Blocked | None:
@@ -103,19 +103,19 @@ def _find_blocked(result: Result, limits: Limits) -> Blocked | None:
         return find_blocked(result, limits, step)
 
 
-def _find_margins(result: Result, limits: Limits, asked: Mapping[str, bool]) -> ProofMargins:
+def _find_margins(result: Result, limits: Limits, searches: Mapping[str, bool]) -> ProofMargins:
     from nrs_design.pipeline.margins import run_proof_margins
 
     with progress(f"margins of {result.loaded.spec.name}", lines=True) as step:
-        return run_proof_margins(result, limits, step, **asked)
+        return run_proof_margins(result, limits, step, **searches)
 
 
-def _next_steps(result: Result, asked: Mapping[str, bool]) -> tuple[str, ...]:
+def _next_steps(result: Result, searches: Mapping[str, bool]) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.remedies import next_steps
 
-    return next_steps(result, **asked, spec=result.loaded.path)
+    return next_steps(result, **searches, spec=result.loaded.path)
 
 
 def _write(result: Result, path: Path | None) -> Path | None:

@@ -36,7 +36,7 @@ class Answer:
     """Result of a command."""
 
     facts: Callable[[], dict[str, Any]] = dict  # Content of the JSON document
-    show: Callable[[], object] = _nothing  # Prints the result as text
+    print_text: Callable[[], object] = _nothing  # Prints the result as text
     code: int = exit_codes.PROVED
     loud: bool = False  # True for an error, which --quiet does not silence
 
@@ -52,11 +52,11 @@ class Answer:
         """Print the result as text; under --quiet, print errors only."""
         if self.loud or wants_text():
             with output(as_json=False, quiet=False, verbose=wants_details()):
-                self.show()
+                self.print_text()
 
 
 def command(
-    name: str, *, has_json: bool = True, each_axis: bool = False, passes_on: bool = False
+    name: str, *, has_json: bool = True, each_axis: bool = False, forwards_options: bool = False
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json, -v and -q, and an end that prints its answer.
 
@@ -91,7 +91,7 @@ def command(
         paragraphs = (inspect.getdoc(function) or "").split("\n\n")
         run.__doc__ = "\n\n".join(" ".join(text.split()) for text in paragraphs)
         vars(run)["__signature__"] = signature.replace(parameters=parameters)
-        vars(run)["settings"] = {"ignore_unknown_options": passes_on}
+        vars(run)["settings"] = {"ignore_unknown_options": forwards_options}
         run.__annotations__ = {p.name: p.annotation for p in parameters}
         return run
 

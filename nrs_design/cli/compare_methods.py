@@ -46,7 +46,7 @@ def compare_methods(spec: SpecFile, budget: Budget = None, memory: Memory = None
         print_table(loaded.spec.name, columns, rows)
         say("Rates are proved.")
 
-    return Answer(lambda: _facts(found), show, exit_codes.OF_VERDICT[best])
+    return Answer(lambda: _facts(found), show, exit_codes.VERDICT_CODES[best])
 
 
 def _cells(method: Method, result: Result) -> tuple[str, ...]:
@@ -57,15 +57,15 @@ def _cells(method: Method, result: Result) -> tuple[str, ...]:
     rate = None if found.evidence is None else found.evidence.proved_rate(found.system)
     ends = [attempt.outcome for attempt in found.attempts if method in attempt.step]
     seconds = sum(attempt.seconds for attempt in found.attempts)
-    shown = "none" if rate is None else rate_words(rate, found.system.time)
-    return str(found.verdict), shown, "; ".join(ends) or "not needed", f"{1e3 * seconds:.1f}"
+    rate_text = "none" if rate is None else rate_words(rate, found.system.time)
+    return str(found.verdict), rate_text, "; ".join(ends) or "not needed", f"{1e3 * seconds:.1f}"
 
 
-def _facts(found: dict[Method, Result]) -> dict[str, Any]:
+def _facts(results: dict[Method, Result]) -> dict[str, Any]:
     from nrs_design.api.proof_facts import certification_facts
 
     runs = [
         {**certification_facts(result, None), "method": str(method)}
-        for method, result in found.items()
+        for method, result in results.items()
     ]
     return {"runs": runs}

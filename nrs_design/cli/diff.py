@@ -39,17 +39,17 @@ def diff(
     return Answer(lambda: _summary(found), lambda: _print(found), code)
 
 
-def _summary(found: Comparison) -> dict[str, Any]:
+def _summary(comparison: Comparison) -> dict[str, Any]:
     return {
-        "a": _side(found.before),
-        "b": _side(found.after),
+        "a": _side(comparison.before),
+        "b": _side(comparison.after),
         "differences": [
             {"part": str(item.part), "what": item.what, "a": item.before, "b": item.after}
-            for item in found.differences
+            for item in comparison.differences
         ],
-        "same": list(map(str, found.same)),
-        "not_compared": list(map(str, found.not_compared)),
-        "remarks": list(found.remarks),
+        "same": list(map(str, comparison.same)),
+        "not_compared": list(map(str, comparison.not_compared)),
+        "remarks": list(comparison.remarks),
     }
 
 
@@ -57,11 +57,11 @@ def _side(side: Side) -> dict[str, str]:
     return {"file": str(side.path), "name": side.name}
 
 
-def _print(found: Comparison) -> None:
-    say(f"A: {found.before.name} ({found.before.path})")
-    say(f"B: {found.after.name} ({found.after.path})")
-    for part in found.compared:
-        items = [item for item in found.differences if item.part is part]
+def _print(comparison: Comparison) -> None:
+    say(f"A: {comparison.before.name} ({comparison.before.path})")
+    say(f"B: {comparison.after.name} ({comparison.after.path})")
+    for part in comparison.compared:
+        items = [item for item in comparison.differences if item.part is part]
         rows = [
             [item.what, item.before or "-", item.after or "-"] for item in items if not item.is_text
         ]
@@ -75,7 +75,7 @@ def _print(found: Comparison) -> None:
         if texts and not wants_details():
             differ = "differs" if len(texts) == 1 else "differ"
             say(f"{part}: {counted(len(texts), 'text')} {differ} (-v shows them)")
-    if found.same:
-        say(f"the same: {', '.join(found.same)}")
-    for remark in found.remarks:
+    if comparison.same:
+        say(f"the same: {', '.join(comparison.same)}")
+    for remark in comparison.remarks:
         say(remark)

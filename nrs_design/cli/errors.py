@@ -31,9 +31,9 @@ def print_error(error: NrsDesignError) -> None:
         for fault in faults[:MAX_SHOWN]
     ]
     if len(faults) > 1:
-        more = f" and {len(faults) - MAX_SHOWN} more" if len(faults) > MAX_SHOWN else ""
-        where = f" in {printable(error.path)}" if error.path else ""
-        blocks = [f"{block}\n" for block in blocks] + [f"{len(blocks)} faults{more}{where}"]
+        omission = f" and {len(faults) - MAX_SHOWN} more" if len(faults) > MAX_SHOWN else ""
+        location = f" in {printable(error.path)}" if error.path else ""
+        blocks = [f"{block}\n" for block in blocks] + [f"{len(blocks)} faults{omission}{location}"]
     sys.stderr.write("\n".join(blocks) + "\n")
 
 
@@ -60,9 +60,9 @@ def _block(rule: str, fault: Fault, path: Path | None) -> str:
     lines = [_headed(rule, fault.message), f"{gutter}{arrow} {printable(place)}"]
     source = None if path is None else _source(path, fault.line or 1)
     if source is not None:
-        shown, before = excerpt(source, fault.column or 1, max(_width() - len(gutter) - 3, 20))
+        text, before = excerpt(source, fault.column or 1, max(_width() - len(gutter) - 3, 20))
         number = painted(str(fault.line), "blue", sys.stderr)
-        lines += [f"{gutter} {bar}", f"{number} {bar} {shown}"]
+        lines += [f"{gutter} {bar}", f"{number} {bar} {text}"]
         if fault.column:
             lines.append(f"{gutter} {bar} {' ' * before}{painted('^', 'red', sys.stderr)}")
     if fault.remedy:

@@ -12,9 +12,9 @@ INTERNAL = 4
 # As a shell says of a command that Ctrl-C ended.
 INTERRUPTED = 130
 
-OF_VERDICT = {"proved": PROVED, "refuted": REFUTED, "inconclusive": INCONCLUSIVE}
+VERDICT_CODES = {"proved": PROVED, "refuted": REFUTED, "inconclusive": INCONCLUSIVE}
 # By severity of the worst obligation of a gate, from none to a defect of this program.
-OF_SEVERITY = (PROVED, INCONCLUSIVE, REFUTED, USAGE, INTERNAL)
+SEVERITY_CODES = (PROVED, INCONCLUSIVE, REFUTED, USAGE, INTERNAL)
 
 
 def unless(missed: object) -> int:
@@ -24,4 +24,4 @@ def unless(missed: object) -> int:
 
 def worst(codes: Collection[int]) -> int:
     """Return the code of the worst of several answers."""
-    return max(codes, key=OF_SEVERITY.index)
+    return max(codes, key=SEVERITY_CODES.index)

@@ -101,11 +101,11 @@ def _list() -> Answer:
     )
 
 
-def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:
+def _execution(file_format: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:
     """Return how a program is run; other formats have no such options."""
     from nrs_design.exporters.export import Execution
 
-    if chosen.executable:
+    if file_format.executable:
         period = None if sample_time is None else _seconds(sample_time)
         return Execution(period, unproved)
     if unproved or sample_time is not None:
@@ -135,19 +135,19 @@ def _export_design(
     from nrs_design.exporters.write import check_places, places, write_export
     from nrs_design.pipeline.design import placed
 
-    loaded, chosen = take_spec(spec), format_of(format_)
+    loaded, file_format = take_spec(spec), format_of(format_)
     name = loaded.spec.name
-    files = places(chosen, name, out)
-    beside = next(iter(files.values())).parent / f"{name}.cert.json"
-    proof = certificate or beside
+    files = places(file_format, name, out)
+    own_certificate = next(iter(files.values())).parent / f"{name}.cert.json"
+    proof = certificate or own_certificate
     for file in files.values():
         if os.path.realpath(file) == os.path.realpath(proof):
             raise OutputError("is the certificate file", path=file, remedy="choose another --out")
-    check_places(chosen, files, name)
-    check_certificate(spec, beside)
-    recorded = None if certificate else _recorded(spec, beside)
+    check_places(file_format, files, name)
+    check_certificate(spec, own_certificate)
+    recorded = None if certificate else _recorded(spec, own_certificate)
     with progress(f"exporting {name}") as step:
-        if chosen.alone:
+        if file_format.needs_proof_only:
             result = export_proof(loaded, certificate, step, recorded)
         else:
             result = export_design(loaded, certificate, step, execution, recorded)
@@ -156,23 +156,23 @@ def _export_design(
         # The error about a design without a program names its place in the spec.
         with placed(loaded):
             remarks = write_export(result, format_, files, None if certificate else proof, spec)
-    written = list(files.values()) if result.may_be_written else []
+    exported_files = list(files.values()) if result.may_be_written else []
     certified = result.may_be_written and result.certificate is not None
-    placed_at = {
-        "file": str(written[0]) if written else None,
-        "files": list(map(str, written)),
+    locations = {
+        "file": str(exported_files[0]) if exported_files else None,
+        "files": list(map(str, exported_files)),
         "certificate": str(proof) if certified else None,
     }
     return Answer(
-        lambda: Exported(loaded, result).to_dict() | placed_at | {"remarks": remarks},
-        lambda: _show(name, result, written, proof, remarks),
-        exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED),
+        lambda: Exported(loaded, result).to_dict() | locations | {"remarks": remarks},
+        lambda: _show(name, result, exported_files, proof, remarks),
+        exit_codes.VERDICT_CODES.get(result.verdict, exit_codes.REFUTED),
         # Nothing was written, which is an error of its own.
         loud=not result.may_be_written,
     )
 
 
-def _recorded(spec: Path, beside: Path) -> Recorded:
+def _recorded(spec: Path, own_certificate: Path) -> Recorded:
     """Return the certificate of a spec in the nrs.lock of this folder; else that in `beside`."""
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import recorded_in
@@ -180,19 +180,19 @@ def _recorded(spec: Path, beside: Path) -> Recorded:
 
     lock = Path("nrs.lock")
     locked = recorded_in(read_lock_if_any(lock), lock)
-    return locked.get(Path(os.path.abspath(spec)), Recorded(beside))
+    return locked.get(Path(os.path.abspath(spec)), Recorded(own_certificate))
 
 
 def _show(
-    name: str, result: Export, written: list[Path], proof: Path, remarks: tuple[str, ...]
+    name: str, result: Export, exported_files: list[Path], proof: Path, remarks: tuple[str, ...]
 ) -> None:
     if not result.may_be_written:
         note(f"{name}: not exported: {result.reason}")
         return
-    where = ", ".join(map(str, written))
+    file_names = ", ".join(map(str, exported_files))
     proved = result.verdict == "proved"
     verdict = "PROVED" if proved else f"UNPROVED ({result.reason})"
-    say(f"{name}: {verdict}, exported to {where}", verdict="proved" if proved else "")
+    say(f"{name}: {verdict}, exported to {file_names}", verdict="proved" if proved else "")
     if result.certificate is not None:
         note(f"certificate: {proof}")
     for remark in remarks:

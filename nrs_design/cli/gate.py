@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 GateFormat = Literal["text", "github", "sarif", "junit", "json", "markdown"]
 # Folders that a note lists by name.
-SHOWN = 5
+MAX_FOLDERS = 5
 
 
 @command("gate")
@@ -85,7 +85,7 @@ def gate(
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.output import LOCK, check_place
 
-    chosen = format_of(format_)
+    output_format = format_of(format_)
     _check_options(out, jobs, locked=locked, prune=prune)
     refuse_both(("--pages", "--no-reports", pages and no_reports))
     refuse_both(("--pages", "--locked", pages and locked))
@@ -117,7 +117,7 @@ def gate(
         with progress("gate") as step:
             outcome = run_gate(specs, files, step, Overrides(budget=budget, memory=memory), jobs)
         outcome = write_lock(outcome, lock, prune=prune)
-    outcome = _with_not_examined(outcome, paths)
+    outcome = _note_unread_paths(outcome, paths)
     if against is not None:
         from nrs_design.gating.against import compare_with_base
 
@@ -125,17 +125,17 @@ def gate(
     cautions = outcome.cautions
     for item in cautions[:1]:
         _warn(item)
-    _deliver(outcome, chosen, out)
-    shown = [item for item in cautions[1:] if wants_details() or not item.beyond]
-    for item in shown:
+    _deliver(outcome, output_format, out)
+    printed_cautions = [item for item in cautions[1:] if wants_details() or not item.beyond]
+    for item in printed_cautions:
         _warn(item)
-    hidden = len(cautions[1:]) - len(shown)
+    hidden = len(cautions[1:]) - len(printed_cautions)
     if hidden:
         note(f"note: {counted(hidden, 'more remark')} on designs, as `optimize` lists them (or -v)")
     for text in outcome.notes:
         note(f"note: {text}")
     note(f"{perf_counter() - start:.1f} s")
-    raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])
+    raise typer.Exit(exit_codes.SEVERITY_CODES[outcome.severity])
 
 
 def _warn(item: Caution) -> None:
@@ -166,16 +166,16 @@ def _check_options(out: Path | None, jobs: int, *, locked: bool, prune: bool) ->
         check_place(out, GATE)
 
 
-def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None:
+def _deliver(outcome: GateOutcome, output_format: GateFormat, out: Path | None) -> None:
     """Write the document to stdout or the file --out, and a summary to the terminal."""
     from nrs_design.gating.formats import FORMATS
     from nrs_design.gating.formats.text import summary_line
     from nrs_design.output import GATE, write_output
 
-    if out is None and chosen == "text":
+    if out is None and output_format == "text":
         _show(outcome)
         return
-    document = FORMATS[chosen](outcome)
+    document = FORMATS[output_format](outcome)
     if out is None:
         sys.stdout.write(document)
     else:
@@ -197,15 +197,15 @@ def _show(outcome: GateOutcome) -> None:
         say(line)
 
 
-def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
+def _note_unread_paths(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
     from nrs_design.gating.find_specs import SUFFIXES, find_misnamed, find_passed_over
 
-    for why, found in {
+    for reason, found in {
         "not looked into (hidden, or a link)": find_passed_over(paths),
         f"not examined, for want of a name that ends in {SUFFIXES[0]}": find_misnamed(paths),
     }.items():
         if found:
-            listed = ", ".join(path.as_posix() for path in found[:SHOWN])
-            more = f" and {len(found) - SHOWN} more" if len(found) > SHOWN else ""
-            outcome = outcome.with_note(f"{why}: {listed}{more}")
+            names = ", ".join(path.as_posix() for path in found[:MAX_FOLDERS])
+            omission = f" and {len(found) - MAX_FOLDERS} more" if len(found) > MAX_FOLDERS else ""
+            outcome = outcome.with_note(f"{reason}: {names}{omission}")
     return outcome

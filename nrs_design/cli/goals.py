@@ -50,27 +50,27 @@ def print_granted(result: Result) -> None:
     from nrs_design.certificates.catalogue import sentences
 
     certification = result.certification
-    granted, names = certification.granted, [mode.name for mode in certification.system.modes]
+    assumptions, names = certification.granted, [mode.name for mode in certification.system.modes]
     detail("  taken for granted (nrs-design report says how to test each):")
-    for text in sentences(granted):
+    for text in sentences(assumptions):
         detail(f"    - {text}")
     detail(f"  common quadratic function: {certification.common_quadratic}")
     remainder = f" and {len(names) - MODE_NAMES} more" if len(names) > MODE_NAMES else ""
     detail(f"  {counted(len(names), 'mode')}: {', '.join(names[:MODE_NAMES])}{remainder}")
-    if granted and not wants_details():
-        without = "; ".join(result.omits)
-        besides = f"; not modelled: {without}" if without else ""
-        say(f"  takes {counted(len(granted), 'thing')} for granted (-v){besides}")
+    if assumptions and not wants_details():
+        effects = "; ".join(result.omits)
+        omission = f"; not modelled: {effects}" if effects else ""
+        say(f"  takes {counted(len(assumptions), 'thing')} for granted (-v){omission}")
 
 
 def design_answer(
-    shown: Optimum,
+    optimum: Optimum,
     items: Iterable[AbstractControllerAnalysis],
     facts: Callable[[], dict[str, Any]],
-    show: Callable[[], object],
+    print_design: Callable[[], object],
     *,
     proved: bool = True,
-    judged: bool = False,
+    prints_goals: bool = False,
 ) -> Answer:
     """Return the answer of a command that shows a design: the worst of it, goals, what is doubtful.
 
@@ -79,14 +79,14 @@ def design_answer(
     """
     from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
-    spec, doubts = shown.designed.spec, shown.analysis.warnings
-    given = () if judged or spec.goals is None else (key for key, _ in spec.goals.given())
+    spec, doubts = optimum.designed.spec, optimum.analysis.warnings
+    given = () if prints_goals or spec.goals is None else (key for key, _ in spec.goals.given())
     left = [key for key in given if key in OF_THE_CERTIFICATE]
 
     def show_all() -> None:
         for doubt in doubts[:1]:
             note(f"warning: {doubt}")
-        show()
+        print_design()
         _print_goals(spec.name, items)
         if left:
             keys = ", ".join(left)
@@ -96,7 +96,7 @@ def design_answer(
 
     return Answer(
         lambda: (
-            shown.designed.loaded.facts | facts() | {"warnings": [str(doubt) for doubt in doubts]}
+            optimum.designed.loaded.facts | facts() | {"warnings": [str(doubt) for doubt in doubts]}
         ),
         show_all,
         _exit_code(items, proved=proved),

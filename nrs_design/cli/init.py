@@ -58,23 +58,23 @@ def init(
     from nrs_design.spec.schema import schema_text
     from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 
-    chosen: str = template
+    template_name: str = template
     if drive != "motor":
         if template != "interaction-design":
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
-        chosen = f"{drive}-interface"
+        template_name = f"{drive}-interface"
     if axis == "prismatic":
-        if chosen not in PRISMATIC:
+        if template_name not in PRISMATIC:
             raise typer.BadParameter(
                 "it is for an interaction-design with a motor, or over velocities or positions; in "
                 "another, write `axis: prismatic`, and quantities in m, N and kg",
                 param_hint="--axis",
             )
-        chosen = PRISMATIC[chosen]
+        template_name = PRISMATIC[template_name]
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")
-    write_output(path, named_after(path, TEMPLATES[chosen]))
+    write_output(path, named_after(path, TEMPLATES[template_name]))
     note(f"{path} written")
     schema = path.with_name(SCHEMA)
     if not schema.exists():

@@ -21,8 +21,8 @@ def mode_logic(spec: SpecFile) -> Answer:
     from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_summary, logic_tables
 
     loaded = take_spec(spec)
-    declared = loaded.spec
-    if declared.kind != "interaction-design" or declared.mode_logic is None:
+    design_spec = loaded.spec
+    if design_spec.kind != "interaction-design" or design_spec.mode_logic is None:
         raise wrong_kind(
             loaded,
             "the spec has no mode_logic",
@@ -30,8 +30,8 @@ def mode_logic(spec: SpecFile) -> Answer:
         )
 
     def show() -> None:
-        print_blocks(declared.name, logic_tables(declared))
-        for line in logic_meaning(declared):
+        print_blocks(design_spec.name, logic_tables(design_spec))
+        for line in logic_meaning(design_spec):
             say(line)
 
-    return Answer(lambda: loaded.facts | logic_summary(declared), show)
+    return Answer(lambda: loaded.facts | logic_summary(design_spec), show)

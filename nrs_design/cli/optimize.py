@@ -45,7 +45,7 @@ def optimize(spec: SpecFile) -> Answer:
         interaction_of(loaded, "has nothing to design")
         designed = design_at_least_cost(loaded)
         assert designed is not None, "an interaction design"
-        shown, found = Optimum(designed), None
+        optimum, found = Optimum(designed), None
         goals: list[CertifiedGoal] = []
         step("margins")
         if steering_goals(designed.spec):
@@ -53,97 +53,99 @@ def optimize(spec: SpecFile) -> Answer:
             from nrs_design.pipeline.certified_optimum import run_certified_optimum
 
             step("gains with their proof")
-            found = run_certified_optimum(designed, shown.analysis, step)
+            found = run_certified_optimum(designed, optimum.analysis, step)
             assert found.result.designed is not None, "as it was designed before"
-            shown = Optimum(found.result.designed)
-            goals = [*certified_goals(shown.designed.spec, found.result.certificate)]
+            optimum = Optimum(found.result.designed)
+            goals = [*certified_goals(optimum.designed.spec, found.result.certificate)]
 
     def facts() -> dict[str, Any]:
-        return shown.to_dict() | {"certified": found and _certified_facts(found, goals)}
+        return optimum.to_dict() | {"certified": found and _certified_facts(found, goals)}
 
     def show() -> None:
-        _print(shown)
+        _print(optimum)
         if found is not None:
             for goal in goals:
                 say(goal.line)
-            _print_certified(shown, found)
-            _print_freed(designed, shown, found)
+            _print_certified(optimum, found)
+            _print_freed(designed, optimum, found)
 
     proved = all(goal.met for goal in goals)
-    items = shown.analysis.impedance
-    return design_answer(shown, items, facts, show, proved=proved, judged=found is not None)
+    items = optimum.analysis.impedance
+    return design_answer(optimum, items, facts, show, proved=proved, prints_goals=found is not None)
 
 
-def _certified_facts(found: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
+def _certified_facts(certified: CertifiedOptimum, goals: Sequence[CertifiedGoal]) -> dict[str, Any]:
     """Return the proved facts of gains that a proof has chosen, in SI units."""
     from nrs_design.certificates.goals import decay_rate
 
-    rate = decay_rate(found.result.certificate)
+    rate = decay_rate(certified.result.certificate)
     return {
-        "gains": {f"{name}.{gain}": text for (name, gain), text in found.gains.items()},
-        "cost": found.cost,
-        "free_cost": found.free_cost,
-        "free_decay_rate": found.free_rate,
+        "gains": {f"{name}.{gain}": text for (name, gain), text in certified.gains.items()},
+        "cost": certified.cost,
+        "free_cost": certified.free_cost,
+        "free_decay_rate": certified.free_rate,
         "goals": [
             {"goal": goal.key, "wanted": goal.wanted, "shown": goal.said, "met": goal.met}
             for goal in goals
         ],
         "decay_rate": None if rate is None else lower_float(rate),
-        "designs_tried": found.tried,
-        "at_bounds": dict(found.at_bounds),
-        "declares_delay": _declared(found),
+        "designs_tried": certified.tried,
+        "at_bounds": dict(certified.at_bounds),
+        "declares_delay": _declared_ages(certified),
     }
 
 
-def _declared(found: CertifiedOptimum) -> list[int] | None:
+def _declared_ages(certified: CertifiedOptimum) -> list[int] | None:
     """Return the ages of the force that were declared beyond those of the spec."""
-    certificate = found.result.certificate
+    certificate = certified.result.certificate
     return None if certificate is None or certificate.ages is None else [*certificate.ages]
 
 
-def _print_certified(shown: Optimum, found: CertifiedOptimum) -> None:
+def _print_certified(optimum: Optimum, found: CertifiedOptimum) -> None:
     """Print assumptions and cost of the proof that has chosen the gains."""
     print_granted(found.result)
-    if shown.analysis.impedance:
-        more = max(found.cost - found.free_cost, 0.0)
+    if optimum.analysis.impedance:
+        increase = max(found.cost - found.free_cost, 0.0)
         free = found.free_rate
         rate = "" if free is None else f", which decays with {free:.3g} 1/s (floating point)"
         say(
-            f"cost {found.cost:.4f} of all controllers, {more:.4f} above the least without goals "
-            f"of a proof{rate}"
+            f"cost {found.cost:.4f} of all controllers, {increase:.4f} above the least without "
+            f"goals of a proof{rate}"
         )
 
 
-def _print_freed(given: Designed, shown: Optimum, found: CertifiedOptimum) -> None:
+def _print_freed(original: Designed, optimum: Optimum, found: CertifiedOptimum) -> None:
     """Print gains and ages that are not those of the spec."""
-    units, bounds = shown.designed.design.units, dict(found.at_bounds)
-    for name, free in given.spec.design.free.items():
+    units, bounds = optimum.designed.design.units, dict(found.at_bounds)
+    for name, free in original.spec.design.free.items():
         for gain, _ in free.given():
-            value = shown.designed.design.laws[name].gains[gain]
-            times = f"{float(value / given.design.laws[name].gains[gain]):.3g} times the given one"
-            on = bounds.get(f"{name} {gain}")
-            said = f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
-            unseen = "the cost has neither noise of the sensor nor effort of the motor"
-            end = f": on its {on} bound; {unseen}: look at both before you take it"
-            say(said if on is None else said + end)
-    if (delay := _declared(found)) is not None:
+            value = optimum.designed.design.laws[name].gains[gain]
+            times = (
+                f"{float(value / original.design.laws[name].gains[gain]):.3g} times the given one"
+            )
+            bound = bounds.get(f"{name} {gain}")
+            statement = f"{name} {gain} = {float(value):.6g} {units[name][gain]}, {times}"
+            omission = "the cost has neither noise of the sensor nor effort of the motor"
+            end = f": on its {bound} bound; {omission}: look at both before you take it"
+            say(statement if bound is None else statement + end)
+    if (delay := _declared_ages(found)) is not None:
         say(f"proved for `sampling.delay: {delay}`, more than the spec declares")
 
 
-def _print(shown: Optimum) -> None:
-    items, name = shown.analysis.impedance, shown.designed.spec.name
+def _print(optimum: Optimum) -> None:
+    items, name = optimum.analysis.impedance, optimum.designed.spec.name
     if wants_details():
         from nrs_design.reporting.formatting import polynomial_text
 
-        G = shown.analysis.motion
-        designed = shown.analysis.motion_source == "designed"
+        G = optimum.analysis.motion
+        designed = optimum.analysis.motion_source == "designed"
         source = "by root locus" if designed else "given in the spec"
         numerator, denominator = map(polynomial_text, (G.numerator, G.denominator))
         say(f"{name}: G(s) = ({numerator}) / ({denominator}), {source}")
     if not items:
         note("no impedance controllers in this spec; see nrs-design tune for the others")
         return
-    margins = [f"{what}\nmargin" for what in ("gain", "phase", "delay", "disk")]
+    margins = [f"{kind}\nmargin" for kind in ("gain", "phase", "delay", "disk")]
     columns = ["controller", f"Mt\n{unit('kg m^2')}", f"Bt\n{unit('N m s/rad')}", "cost", "Ms"]
     columns += [*margins, f"stands up to\n{unit('N m/rad')}"]
     print_table(f"{name}: {_worst_of(items)}", columns, [*map(_cells, items)])
@@ -156,16 +158,16 @@ def _cells(item: ImpedanceAnalysis) -> list[str]:
     """Return the row of a controller; `_marks` says what the marks mean."""
     from nrs_design.design.measures import MARGINS
 
-    at_arm, beside = item.limit_at_arm, ""
-    if at_arm is not None and math.isfinite(at_arm):
-        beside = f"\n{_limit(at_arm)} N/m at {item.lever_arm:g} m"
+    arm_limit, arm_text = item.limit_at_arm, ""
+    if arm_limit is not None and math.isfinite(arm_limit):
+        arm_text = f"\n{_limit(arm_limit)} N/m at {item.lever_arm:g} m"
     return [
         item.name,
         f"{item.Mt:.6g}{'*' * ('Mt' in item.on_bound)}",
         f"{item.Bt:.6g}{'*' * ('Bt' in item.on_bound)}",
         f"{item.cost:.4f}",
         *(f"{item.shown(measure).text}{'!' * (measure in item.unusual)}" for measure in MARGINS),
-        f"{_limit(item.lowest_limit)}{beside}",
+        f"{_limit(item.lowest_limit)}{arm_text}",
     ]
 
 
@@ -180,8 +182,8 @@ def _worst_of(items: Sequence[ImpedanceAnalysis]) -> str:
     """Say over what the margins of a table are the worst."""
     from nrs_design.design.measures import MARGINS
 
-    shown = (one for item in items for one in map(item.shown, MARGINS))
-    whole = all(one.proved is not None or one.everywhere for one in shown)
+    margins = (one for item in items for one in map(item.shown, MARGINS))
+    whole = all(one.proved is not None or one.everywhere for one in margins)
     return f"the worst {'over' if whole else 'at the corners of'} all ranges"
 
 
@@ -193,11 +195,11 @@ def _print_basis(items: Sequence[ImpedanceAnalysis]) -> None:
     for line in meanings(items):
         detail(line)
     proved = [m.title for m in MARGINS if all(m.title in item.proved_titles for item in items)]
-    shown = "all margins" if len(proved) == len(MARGINS) else ", ".join(proved)
+    titles = "all margins" if len(proved) == len(MARGINS) else ", ".join(proved)
     if wants_details():
         return
     if proved:
-        say(f"Proved over all values of the ranges: {shown}; the rest is floating point (-v).")
+        say(f"Proved over all values of the ranges: {titles}; the rest is floating point (-v).")
     else:
         say("Margins: floating point at the corners of all ranges, not a proof (-v says more).")
 
@@ -209,5 +211,5 @@ def _marks(items: Sequence[ImpedanceAnalysis]) -> Iterator[str]:
     if any(item.on_bound for item in items):
         yield "* on its bound: the range of the spec has chosen it, not the cost"
     if found := [m for m in MARGINS if any(m in item.unusual for item in items)]:
-        said = ", ".join(f"{measure.title} {measure.usual}" for measure in found)
-        yield f"! not as usual ({said}); a goal says what is accepted"
+        usual = ", ".join(f"{measure.title} {measure.usual}" for measure in found)
+        yield f"! not as usual ({usual}); a goal says what is accepted"

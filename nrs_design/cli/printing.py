@@ -137,13 +137,13 @@ def progress(title: str, *, lines: bool = False) -> Iterator[Callable[[str], Non
         yield lambda step: None
         return
     if not sys.stderr.isatty():
-        told = start = monotonic()
+        last_report = start = monotonic()
 
         def tell(step: str) -> None:
-            nonlocal told
+            nonlocal last_report
             now = monotonic()
-            if lines or now - told > SILENCE:
-                told = now
+            if lines or now - last_report > SILENCE:
+                last_report = now
                 note(f"{title}: {step} ({now - start:.0f} s)")
 
         yield tell

@@ -69,13 +69,13 @@ def report(
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         return _report_robot(loaded, place, day)
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory))
-    asked = {"margin": margin, "shortest_dwell": shortest_dwell}
+    searches = {"margin": margin, "shortest_dwell": shortest_dwell}
     with progress(f"reporting {loaded.spec.name}") as step:
         if certificate is None:
             result = run_certification(loaded, limits=limits, progress=step)
         else:
             result = run_recorded(loaded, certificate, step)
-        margins = run_proof_margins(result, limits, step, **asked)
+        margins = run_proof_margins(result, limits, step, **searches)
         blocked = find_blocked(result, limits, step)
         step("figures")
         analysis = judged_if_stable(
@@ -84,8 +84,8 @@ def report(
         page = build_report(result, analysis, margins=margins, blocked=blocked, date=day)
         _write(page, place, spec)
     verdict = str(result.certification.verdict)
-    steps = next_steps(result, **asked, spec=loaded.path)
-    code = exit_codes.OF_VERDICT[verdict]
+    steps = next_steps(result, **searches, spec=loaded.path)
+    code = exit_codes.VERDICT_CODES[verdict]
     return _answer(loaded, verdict, code, place, result.certificate, steps)
 
 
@@ -106,7 +106,7 @@ def _answer(
         }
 
     def show() -> None:
-        decided = verdict if verdict in exit_codes.OF_VERDICT else ""
+        decided = verdict if verdict in exit_codes.VERDICT_CODES else ""
         say(f"{loaded.spec.name}: {decided.upper() or verdict}", verdict=decided)
         for line in steps:
             say(f"next: {line}")

@@ -17,8 +17,9 @@ Described = Literal["spec", "export"]
 
 @command("schema", has_json=False)
 def schema(
-    of: Annotated[
-        Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
+    document: Annotated[
+        Described,
+        typer.Option("--of", help="Of spec files (draft-07), or of export records (2020-12)."),
     ] = "spec",
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
 ) -> Answer:
@@ -32,7 +33,7 @@ def schema(
     from nrs_design.output import SCHEMA, write_output
     from nrs_design.spec.schema import schema_text
 
-    text = record_schema_text() if of == "export" else schema_text()
+    text = record_schema_text() if document == "export" else schema_text()
     if out is None:
         sys.stdout.write(text)
     else:

@@ -102,21 +102,23 @@ def simulate(
     if engine is None and timed:
         engine = "sampled"
     names = tuple(dict.fromkeys(scenario or ()))
-    wanted = Runs(names, engine, period, delay, max_steps, outer_period)
+    settings = Runs(names, engine, period, delay, max_steps, outer_period)
     with progress(f"simulating {loaded.spec.name}") as step:
-        designed, kept = run_interaction_of(loaded, certificate, "describes no interaction", step)
-        prove = partial(_proof, designed, kept, step, bound=bound)
+        designed, certificate_read = run_interaction_of(
+            loaded, certificate, "describes no interaction", step
+        )
+        prove = partial(_proof, designed, certificate_read, step, bound=bound)
         if worst:
             return worst_case(designed, prove(), out, step)
-        return simulate_scenarios(designed, wanted, prove, out, step)
+        return simulate_scenarios(designed, settings, prove, out, step)
 
 
 def _proof(
-    designed: Designed, kept: Certificate | None, step: Progress, *, bound: bool
+    designed: Designed, certificate: Certificate | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
-    if kept is not None or not bound or designed.spec.disturbances is None:
-        return kept
+    if certificate is not None or not bound or designed.spec.disturbances is None:
+        return certificate
     from nrs_design.pipeline.certification import certify_design
 
     step("certifying its bounds")

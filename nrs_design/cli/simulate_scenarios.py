@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def simulate_scenarios(
     designed: Designed,
-    wanted: Runs,
+    settings: Runs,
     prove: Callable[[], Certificate | None],
     out: Path | None,
     step: Progress,
@@ -43,12 +43,12 @@ def simulate_scenarios(
     from nrs_design.pipeline.scenarios import names_of, run_scenarios
 
     name = designed.spec.name
-    _check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, wanted)), tables=True)
-    found = list(run_scenarios(designed, wanted, step))
+    _check_runs(out, (f"{name}.{one}" for one in names_of(designed.spec, settings)), tables=True)
+    found = list(run_scenarios(designed, settings, step))
     runs = Simulation.of(designed, found, prove())
     step("figures")
-    drawn = ((f"{name}.{one.name}", one.plot(), one.response.to_csv()) for one in runs)
-    files = _write_runs(out, drawn)
+    outputs = ((f"{name}.{one.name}", one.plot(), one.response.to_csv()) for one in runs)
+    files = _write_runs(out, outputs)
 
     def show() -> None:
         if not wants_details():
@@ -76,12 +76,12 @@ def worst_case(
     from nrs_design.reporting.worst_case import COLUMNS, LEFT_OUT, UNDECLARED, meaning, worst_rows
 
     spec = designed.spec
-    begun = f"{spec.name}.worst-"
-    _check_runs(out, (f"{begun}{name}" for name in ("force", "velocity", "deflection")))
+    prefix = f"{spec.name}.worst-"
+    _check_runs(out, (f"{prefix}{name}" for name in ("force", "velocity", "deflection")))
     case = run_worst_case(designed, proof, progress=step)
     found = WorstFound(designed, case)
     step("figures")
-    written = _write_runs(out, ((f"{begun}{name}", found.plot(name)) for name in found.figures))
+    files = _write_runs(out, ((f"{prefix}{name}", found.plot(name)) for name in found.figures))
 
     def show() -> None:
         title = f"{spec.name}: the worst that an adversary found"
@@ -91,7 +91,7 @@ def worst_case(
             say(UNDECLARED)
         say(f"not in it: {LEFT_OUT}")
 
-    return Answer(lambda: found.to_dict() | {"files": written}, show)
+    return Answer(lambda: found.to_dict() | {"files": files}, show)
 
 
 def _check_runs(folder: Path | None, names: Iterable[str], *, tables: bool = False) -> None:
@@ -109,15 +109,15 @@ def _write_runs(
     folder: Path | None, runs: Iterable[tuple[str, Figure, *tuple[str, ...]]]
 ) -> list[str]:
     """Write figure, and table if any, of all runs, once all are there; return their files."""
-    from nrs_design.reporting.images import to_png, to_svg_file
+    from nrs_design.reporting.images import render_png, render_svg_file
 
     if folder is None:
         return []
     outputs: list[Output] = []
     for name, figure, *tables in runs:
         outputs += [(folder / f"{name}.csv", table, RESPONSE) for table in tables]
-        outputs.append((folder / f"{name}.svg", to_svg_file(figure), SVG))
-        outputs.append((folder / f"{name}.png", to_png(figure), PNG))
+        outputs.append((folder / f"{name}.svg", render_svg_file(figure), SVG))
+        outputs.append((folder / f"{name}.png", render_png(figure), PNG))
     write_outputs(outputs)
     note(f"written to {folder}")
     return [str(path) for path, _, _ in outputs]
@@ -129,25 +129,25 @@ def _print_briefly(runs: Simulation) -> None:
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up
 
-    fine, rows, beyond = current().fine, [], False
+    fine, rows, exceeds_limit = current().fine, [], False
     for one in runs:
         proved = {b.output: b.level for b in one.bounds if not b.uncovered}
         limits = {"torque": one.metrics["torque_limit"], **one.scenario.limits}
         peaks = {"torque": "peak_torque", "velocity": "peak_velocity", "deflection": "peak_depth"}
-        shown = {
+        texts = {
             key: four_digits_up((1.0 if key == "torque" else fine) * one.metrics[name])
             + "!" * (one.metrics[name] > limits.get(key, math.inf))
             for key, name in peaks.items()
         }
-        beyond = beyond or "!" in "".join(shown.values())
+        exceeds_limit = exceeds_limit or "!" in "".join(texts.values())
         bound = upper(Fraction(proved["force"]), 4) if "force" in proved else "-"
-        torque = (shown["torque"], bound, f"{limits['torque']:.4g}")
-        moved = (shown["velocity"], shown["deflection"], str(one.metrics["switches"]))
-        rows.append([one.name, *torque, *moved])
-    torques = [f"{what}\n{unit('N m')}" for what in ("largest", "proved", "limit")]
+        torque = (texts["torque"], bound, f"{limits['torque']:.4g}")
+        motion_cells = (texts["velocity"], texts["deflection"], str(one.metrics["switches"]))
+        rows.append([one.name, *torque, *motion_cells])
+    torques = [f"{kind}\n{unit('N m')}" for kind in ("largest", "proved", "limit")]
     moves = [f"speed\n{unit('deg/s')}", f"deflection\n{unit('deg')}"]
     print_table("", ["run", *torques, *moves, "switches"], rows)
-    if beyond:
+    if exceeds_limit:
         say("! beyond a limit of the spec or the scenario")
     for one in runs:
         if one.run.stopped:
@@ -159,26 +159,26 @@ def _print_briefly(runs: Simulation) -> None:
     say("A run proves nothing; -v says more.")
 
 
-def _print(one: ScenarioRun) -> None:
+def _print(result: ScenarioRun) -> None:
     """Print the metrics of a run with their certified bounds."""
     from nrs_design.proof.bounds import upper
     from nrs_design.reporting.simulation import four_digits_up, metric_rows
 
-    run, rate = one.run, one.rate
+    run, rate = result.run, result.rate
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
-                metric_rows(one.metrics, one.scenario.limits))  # fmt: skip
+                metric_rows(result.metrics, result.scenario.limits))  # fmt: skip
     say(f"  {_setting(run)}")
-    peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
-    for b in one.bounds:
+    peaks = {"force": result.metrics["peak_torque"], "velocity": result.metrics["peak_velocity"]}
+    for b in result.bounds:
         peak = peaks.get(b.output)
-        shown = "" if peak is None else f", simulated peak {four_digits_up(peak)} {b.unit}"
+        peak_text = "" if peak is None else f", simulated peak {four_digits_up(peak)} {b.unit}"
         level = upper(Fraction(b.level))
-        say(f"  certified bound on the {b.output}: {level} {b.unit}{shown}")
+        say(f"  certified bound on the {b.output}: {level} {b.unit}{peak_text}")
         for reason in b.uncovered:
             say(f"    it is not about this run: {reason}")
     if rate is not None:
-        here = "" if rate.start is None else f", here from {rate.start:.6g} s on"
-        say(f"  certified decay once nothing is commanded{here}: {_rate(rate)}")
+        start = "" if rate.start is None else f", here from {rate.start:.6g} s on"
+        say(f"  certified decay once nothing is commanded{start}: {_rate(rate)}")
         for reason in rate.uncovered:
             say(f"    it is not about this run: {reason}")
     if run.missed is not None:
@@ -198,15 +198,15 @@ def _setting(run: Run) -> str:
     """Say which controllers were in force, and when the law ran, on how old a force sample."""
     modes = run.response.modes
     active = [modes[i] for i in sorted(set(run.response.mode.tolist()))]
-    said = f"in force: {', '.join(active)}"
+    modes_text = f"in force: {', '.join(active)}"
     if run.sampling is None:
-        return f"{said}; continuous time, force of the moment"
+        return f"{modes_text}; continuous time, force of the moment"
     period, youngest, oldest = run.sampling
     age = f"{oldest}" if youngest == oldest else f"{youngest} to {oldest}, drawn anew at each"
     clock = f"a sample every {period:.6g} s"
     if run.outer not in (None, period):
         clock = f"motion loop every {period:.6g} s, force sample every {run.outer:.6g} s"
-    return f"{said}; {clock}, age of the force in samples: {age}"
+    return f"{modes_text}; {clock}, age of the force in samples: {age}"
 
 
 def _rate(rate: CertifiedRate) -> str:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
 
-class _Unheard(io.FileIO):
+class _DetachedOutput(io.FileIO):
     """Discards output once the reader has gone, as after ``| head``.
 
     The command then ends with the exit code and the files that it would have had.
@@ -33,7 +33,7 @@ def lasting(stream: TextIO | None) -> TextIO:
     if stream is None:
         return Path(os.devnull).open("w")
     try:
-        raw = _Unheard(stream.fileno(), "w", closefd=False)
+        raw = _DetachedOutput(stream.fileno(), "w", closefd=False)
     except (OSError, ValueError):
         # In a test or a notebook it is not a stream of the system.
         return stream

@@ -51,7 +51,7 @@ WORDS = {
 }
 
 
-@command("sweep", passes_on=True)
+@command("sweep", forwards_options=True)
 def sweep(
     spec: SpecFile,
     words: Annotated[
@@ -72,7 +72,7 @@ def sweep(
         ),
     ],
     jobs: Annotated[int, typer.Option(min=1, help="How many processes.")] = 1,
-    shown: Annotated[
+    fact_names: Annotated[
         list[str] | None,
         typer.Option(
             "--show",
@@ -101,12 +101,12 @@ def sweep(
 
     if table is not None:
         check_place(table, SWEEP)
-    name = _named(words)
+    name = _command_name(words)
     job = Job(spec, read_grid(spec, fields), name, tuple(words[len(name) :]))
     _check_options(job)
     points = _points(job, jobs)
     found = _Swept(job, points, [dict(flat(point.result or {})) for point in points])
-    names = chosen(found.rows, shown) if shown else None
+    names = chosen(found.rows, fact_names) if fact_names else None
     if table is not None:
         write_output(table, found.table(), replaces=SWEEP)
         note(f"table written to {table}")
@@ -114,7 +114,7 @@ def sweep(
     return Answer(found.facts, lambda: found.show(names), code)
 
 
-def _named(words: Sequence[str]) -> tuple[str, ...]:
+def _command_name(words: Sequence[str]) -> tuple[str, ...]:
     """Return the words of the command that is named first."""
     for length in (1, 2):
         if " ".join(words[:length]) in SWEPT:
@@ -151,10 +151,10 @@ def _points(job: Job, jobs: int) -> list[PointAnswer]:
     points = job.grid.points
     found: dict[int, PointAnswer] = {}
     with progress(f"{len(points)} points") as step:
-        for at, answer in map_in_processes(partial(answer_point, job), points, jobs):
-            found[at] = answer
+        for index, answer in map_in_processes(partial(answer_point, job), points, jobs):
+            found[index] = answer
             step(f"{len(found)} done")
-    return [found[at] for at in range(len(points))]
+    return [found[index] for index in range(len(points))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,13 +198,15 @@ class _Swept:
             writer.writerow([at, point.code, _message(point), *self._values(point), *facts])
         return text.getvalue()
 
-    def show(self, wanted: list[str] | None) -> None:
+    def show(self, fact_names: list[str] | None) -> None:
         """Print what was set, how it ended, and some facts; by default those that differ."""
         from nrs_design.pipeline.sweep_table import cell_text, telling
 
         # The column `answer` shows the verdict.
-        names = wanted or [name for name in telling(self.rows) if name != "verdict"]
-        names, more = (names, []) if wanted else (names[:MOST_COLUMNS], names[MOST_COLUMNS:])
+        names = fact_names or [name for name in telling(self.rows) if name != "verdict"]
+        names, omitted_names = (
+            (names, []) if fact_names else (names[:MOST_COLUMNS], names[MOST_COLUMNS:])
+        )
         columns = [f"{f.path}\n{f.unit}" if f.unit else f.path for f in self.job.grid.fields]
         ends = [
             str(row.get("verdict", WORDS[point.code]))
@@ -221,8 +223,9 @@ class _Swept:
         )
         counts = ", ".join(f"{count} {word}" for word, count in Counter(ends).items())
         say(f"{len(self.points)} points: {counts}")
-        if more or len(self.points) > MOST_ROWS:
-            say(f"--csv FILE holds all rows and facts; more that differ: {', '.join(more) or '-'}")
+        if omitted_names or len(self.points) > MOST_ROWS:
+            omission = ", ".join(omitted_names) or "-"
+            say(f"--csv FILE holds all rows and facts; more that differ: {omission}")
         for line in islice(self._messages(), MOST_MESSAGES):
             say(line)
 
@@ -236,10 +239,10 @@ class _Swept:
     def _messages(self) -> Iterator[str]:
         """Yield each error message once, with the values of its first point."""
         paths = [field.path for field in self.job.grid.fields]
-        said = {_message(point): point for point in reversed(self.points) if point.error}
-        for message, point in reversed(said.items()):
-            where = ", ".join(f"{p}={text}" for p, text in zip(paths, point.values, strict=True))
-            yield f"{WORDS[point.code]}: {where}: {message}"
+        messages = {_message(point): point for point in reversed(self.points) if point.error}
+        for message, point in reversed(messages.items()):
+            setting = ", ".join(f"{p}={text}" for p, text in zip(paths, point.values, strict=True))
+            yield f"{WORDS[point.code]}: {setting}: {message}"
 
 
 def _message(point: PointAnswer) -> str:

@@ -32,31 +32,31 @@ def print_blocks(name: str, blocks: Iterable[Block]) -> None:
             say(block.text)
 
 
-def print_table(title: str, columns: Cells, given: Iterable[Cells]) -> None:
+def print_table(title: str, columns: Cells, source_rows: Iterable[Cells]) -> None:
     """Print a plain table; a second line of a heading is its unit.
 
     Where it is wider than a line may be, rows become columns, side by side as far as they fit; a
     number is never broken.
     """
-    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in given]
+    rows = [["\n".join(map(printable, cell.split("\n"))) for cell in row] for row in source_rows]
     width = columns_of(sys.stdout)
     if _least_width([columns, *rows]) <= width:
         _print(title, columns, rows, width)
         return
-    for index, (head, *body) in enumerate(_turned(columns, rows, width)):
+    for index, (head, *body) in enumerate(_transposed_tables(columns, rows, width)):
         _print("" if index else title, head, body, width)
 
 
-def _turned(columns: Cells, rows: Sequence[Cells], width: int) -> Iterator[list[Cells]]:
+def _transposed_tables(columns: Cells, rows: Sequence[Cells], width: int) -> Iterator[list[Cells]]:
     """Yield transposed tables: the headings, then all rows that fit into the width."""
     headings = [" ".join(column.split("\n")) for column in columns]
-    beside: list[Cells] = []
+    group: list[Cells] = []
     for row in rows:
-        if beside and _least_width(_transpose([headings, *beside, row])) > width:
-            yield _transpose([headings, *beside])
-            beside = []
-        beside.append(row)
-    yield _transpose([headings, *beside])
+        if group and _least_width(_transpose([headings, *group, row])) > width:
+            yield _transpose([headings, *group])
+            group = []
+        group.append(row)
+    yield _transpose([headings, *group])
 
 
 def _transpose(rows: Sequence[Cells]) -> list[Cells]:
@@ -68,10 +68,10 @@ def _least_width(rows: Sequence[Cells]) -> int:
 
 
 def _least_widths(rows: Sequence[Cells]) -> list[int]:
-    return [max(map(_least, cells)) for cells in zip(*rows, strict=True)]
+    return [max(map(_least_cell_width, cells)) for cells in zip(*rows, strict=True)]
 
 
-def _least(cell: str) -> int:
+def _least_cell_width(cell: str) -> int:
     from rich.cells import cell_len
 
     widest = max(map(cell_len, cell.split("\n")))
@@ -87,9 +87,9 @@ def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int) -> Non
 
     table = Table(title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     table.title = printable(title) or None
-    least = _least_widths([columns, *rows])
+    narrowest_widths = _least_widths([columns, *rows])
     fits = _least_width([columns, *rows]) <= width
-    for column, narrowest in zip(columns, least, strict=True):
+    for column, narrowest in zip(columns, narrowest_widths, strict=True):
         table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
     for row in rows:
         table.add_row(*row)

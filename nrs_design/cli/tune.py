@@ -40,10 +40,10 @@ def tune(spec: SpecFile) -> Answer:
                 remedy="nrs-design optimize chooses the gains of impedance controllers",
                 at=(*designed.spec.drives,),
             )
-        shown = Optimum(designed)
-        analysis = shown.analysis
+        optimum = Optimum(designed)
+        analysis = optimum.analysis
     return design_answer(
-        shown,
+        optimum,
         analysis.tuned,
         lambda: _summary(designed.design, analysis),
         lambda: _print(designed, analysis),
@@ -98,19 +98,19 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
 def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any] | None:
     from nrs_design.api.optimum import motion_summary
 
-    wanted, reached = analysis.wanted, analysis.reached
-    if wanted is None:
+    target, achieved = analysis.wanted, analysis.reached
+    if target is None:
         return None
     return {
-        "wanted_poles": _pairs(wanted.wanted_poles),
-        "root_locus": {"derivative_gain": wanted.derivative_gain, "zero": wanted.zero},
+        "wanted_poles": _pairs(target.wanted_poles),
+        "root_locus": {"derivative_gain": target.derivative_gain, "zero": target.zero},
         "Kp": float(design.motion.Kp),
         "Kd": float(design.motion.Kd),
         "loop": motion_summary(analysis),
-        "poles": _pairs(reached.poles),
-        "damping_ratio": reached.damping_ratio,
-        "natural_frequency": reached.natural_frequency,
-        "overshoot_percent": 100 * reached.overshoot,
+        "poles": _pairs(achieved.poles),
+        "damping_ratio": achieved.damping_ratio,
+        "natural_frequency": achieved.natural_frequency,
+        "overshoot_percent": 100 * achieved.overshoot,
         "units": {**design.units["motion"], "poles": "1/s", "zero": "1/s"},
     }
 

@@ -93,7 +93,7 @@ def verify(
         if not brief:
             _print(checked, None if loaded is None else loaded.spec)
 
-    code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
+    code = exit_codes.VERDICT_CODES.get(verdict, exit_codes.REFUTED)
     return Answer(facts, show, code, loud=rejected)
 
 
@@ -114,8 +114,8 @@ def _deployed(
     from nrs_design.spec import InteractionDesignSpec
 
     if not isinstance(loaded.spec, InteractionDesignSpec):
-        what = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
-        raise wrong_kind(loaded, what, "leave --deployed out")
+        problem = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
+        raise wrong_kind(loaded, problem, "leave --deployed out")
     if not deployed.exists():
         raise NrsDesignError(
             "there is no such file or folder",
@@ -125,28 +125,28 @@ def _deployed(
     return compare_deployed(deployed, loaded.spec, checked)
 
 
-def _print_deployed(place: Path, found: DeployedFiles) -> None:
-    if found.differences:
+def _print_deployed(place: Path, deployment: DeployedFiles) -> None:
+    if deployment.differences:
         say(f"REJECTED: {place} is not what the certificate is about", verdict="rejected")
-        for line in found.differences:
+        for line in deployment.differences:
             say(f"  {line}")
         return
-    what = f"{len(found.compared)} files of {place}" if place.is_dir() else str(place)
+    description = f"{len(deployment.compared)} files of {place}" if place.is_dir() else str(place)
     say(
-        f"deployed: {what}: as exported with the certificate, byte for byte; not compared: "
-        f"{found.left_out}"
+        f"deployed: {description}: as exported with the certificate, byte for byte; not compared: "
+        f"{deployment.left_out}"
     )
 
 
 def _print(certificate: Certificate, spec: Spec | None) -> None:
     from nrs_design.certificates.brief import brief
 
-    verdict, where = certificate.verdict, certificate.refuted_in
-    refuted = "" if where is None else f" (refuted {where})"
-    about = "this spec, checked exactly"
+    verdict, contact = certificate.verdict, certificate.refuted_in
+    refuted = "" if contact is None else f" (refuted {contact})"
+    subject = "this spec, checked exactly"
     if spec is None:
-        about = "the modes in the file, checked exactly; name a SPEC to compare them with"
-    say(f"{verdict.upper()}{refuted} for {about}", verdict=verdict)
+        subject = "the modes in the file, checked exactly; name a SPEC to compare them with"
+    say(f"{verdict.upper()}{refuted} for {subject}", verdict=verdict)
     for statement in certificate.statements:
         whole = statement.claim(certificate.system)
         say(f"  {whole if wants_details() else brief(statement, certificate.system)}")
@@ -162,5 +162,5 @@ def _print_gains(certificate: Certificate) -> None:
     units = gain_units(certificate)
     for name, gains in certificate.gains.items():
         if gains:
-            said = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
-            say(f"  {name}: {', '.join(said)}")
+            gain_texts = (f"{gain} = {value} {units[name][gain]}" for gain, value in gains.items())
+            say(f"  {name}: {', '.join(gain_texts)}")

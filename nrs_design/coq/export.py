@@ -26,7 +26,7 @@ FORMAT = Format(
     "a proof of stability; matrices have one, too",
     {".v": COQ},
     identifier=True,
-    alone=True,
+    needs_proof_only=True,
 )
 _LIBRARY = Path(__file__).parent
 # Parts of a claim outside every theorem of the library.

@@ -31,14 +31,16 @@ class Format:
     # True if file names must be identifiers, such as `soft_tissue` for `soft-tissue`.
     identifier: bool = False
     # Whether a certificate is enough, without a design.
-    alone: bool = False
+    needs_proof_only: bool = False
 
 
 @cache
 def format_names() -> tuple[str, ...]:
     """Return the names of the formats of a design, with those of wings; none is loaded."""
-    own = (module.name for module in iter_modules([str(Path(__file__).parent / "formats")]))
-    return tuple(sorted([*own, *(name for name, wing in FORMATS.items() if is_installed(wing))]))
+    own_formats = (module.name for module in iter_modules([str(Path(__file__).parent / "formats")]))
+    return tuple(
+        sorted([*own_formats, *(name for name, wing in FORMATS.items() if is_installed(wing))])
+    )
 
 
 def format_of(name: str) -> Format:
@@ -66,7 +68,7 @@ def rendered(name: str, export: object) -> dict[str, bytes]:
     return files
 
 
-def remarks_on(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
+def find_remarks(name: str, files: Mapping[str, bytes]) -> tuple[str, ...]:
     """Return what rendered files lack."""
     return tuple(getattr(_module(name), "remarks", lambda _: ())(files))
 

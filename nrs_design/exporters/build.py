@@ -44,14 +44,14 @@ def build_record(
         raise CertificateError(f"the certificate {fault}")
     system, evidence = certificate.system, certificate.evidence
     sampling = None if system.sample_time is None else spec.sampling
-    rounded = evidence is not None and evidence.covers_rounding
+    covers_rounding = evidence is not None and evidence.covers_rounding
     return ExportRecord(
         **_contents(design, spec),
         spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
         sample_time=None if sampling is None else SampleTime(exact=exact_text(sampling.step)),
         delay=None if sampling is None else sampling.delay,
         timing=_timing(spec),
-        outside=outside_of(sampled=system.sample_time is not None, rounded=rounded),
+        outside=outside_of(sampled=system.sample_time is not None, covers_rounding=covers_rounding),
         proof=_proof(certificate),
     )
 
@@ -73,7 +73,7 @@ def build_unproved(
         sample_time=SampleTime(exact=exact_text(period)),
         delay=None if spec.sampling is None else spec.sampling.delay,
         timing=_timing(spec),
-        outside=outside_of(sampled=False, rounded=False) if proof else (NOTHING,),
+        outside=outside_of(sampled=False, covers_rounding=False) if proof else (NOTHING,),
         proof=proof,
     )
 
@@ -138,20 +138,20 @@ def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | N
 
 def _timing(spec: InteractionDesignSpec) -> str | None:
     """Say when commands take effect, and which are missed; None for every sample, at once."""
-    sampling, said = spec.sampling, []
+    sampling, sentences = spec.sampling, []
     if sampling is None:
         return None
     if spec.late_at is not None:
         first, last = map(exact_text, spec.late)
-        late = f"{first} s" if first == last else f"{first} s to {last} s"
-        said.append(f"commands take effect {late} after their sample")
+        delay_text = f"{first} s" if first == last else f"{first} s to {last} s"
+        sentences.append(f"commands take effect {delay_text} after their sample")
         if sampling.jitter is not None:
             unsteady = exact_text(sampling.unsteady)
-            said[0] += f", and a period is up to {unsteady} s longer or shorter"
+            sentences[0] += f", and a period is up to {unsteady} s longer or shorter"
     if (misses := sampling.misses) is not None:
         instead = "the command before is held" if misses.command == "hold" else "the command is 0"
-        said.append(f"at most {misses} may be missed: no step is made then, and {instead}")
-    return "; ".join(said) or None
+        sentences.append(f"at most {misses} may be missed: no step is made then, and {instead}")
+    return "; ".join(sentences) or None
 
 
 def _gains(design: ControllerDesign, name: str) -> tuple[Gain, ...]:
@@ -178,7 +178,7 @@ NOT_ROUNDED = (
     "Rounding: the proof is about the law computed without it, not about single-precision "
     "arithmetic."
 )
-OUTSIDE = (
+UNMODELED_EFFECTS = (
     "Whatever a program does beside the law: clamps, saturation, rate limits, guards against wrong "
     "input, its start and its stop.",
     "Input and output: sensors, buses, drivers, clocks and schedulers, beyond what the assumptions "
@@ -187,8 +187,8 @@ OUTSIDE = (
 )
 
 
-def outside_of(*, sampled: bool, rounded: bool) -> tuple[str, ...]:
+def outside_of(*, sampled: bool, covers_rounding: bool) -> tuple[str, ...]:
     """Return the effects outside a proof."""
     if not sampled:
-        return (CONTINUOUS, *OUTSIDE)
-    return OUTSIDE if rounded else (NOT_ROUNDED, *OUTSIDE)
+        return (CONTINUOUS, *UNMODELED_EFFECTS)
+    return UNMODELED_EFFECTS if covers_rounding else (NOT_ROUNDED, *UNMODELED_EFFECTS)

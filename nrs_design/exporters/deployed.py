@@ -23,7 +23,7 @@ _RELEASE = re.compile(rb"nrs-design (\d[\w.+]{0,40}), nrs-design/export/")
 # The law and its monitor, not the self-test, which a robot may do without.
 _LAW = re.compile(r"(?<!_test)\.[hc]$")
 # Characters of a line that a message shows.
-_SHOWN = 100
+_MAX_CHARACTERS = 100
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,12 +32,14 @@ class DeployedFiles:
 
     compared: tuple[Path, ...]
     differences: tuple[str, ...]  # Each begins with the name of its file
-    others: tuple[Path, ...]  # Other files in the folder and below it, relative to it
+    unchecked_files: tuple[Path, ...]  # Other files in the folder and below it, relative to it
 
     @property
     def left_out(self) -> str:
         """Text on what was not compared."""
-        return ", ".join(["how it is compiled", *(file.as_posix() for file in self.others)])
+        return ", ".join(
+            ["how it is compiled", *(file.as_posix() for file in self.unchecked_files)]
+        )
 
 
 def compare_deployed(
@@ -68,20 +70,24 @@ def compare_deployed(
         )
     export = _export(spec, certificate, place)
     # A folder must hold the law itself.
-    there = {formats[file.name] for file in known} | ({"c"} if whole else set())
+    format_kinds = {formats[file.name] for file in known} | ({"c"} if whole else set())
     exported = {
         f"{spec.name}{end}": content
-        for name in sorted(there)
+        for name in sorted(format_kinds)
         for end, content in rendered(name, export).items()
     }
-    told = [f"{file.name}: {each}" for file in known for each in _differs(file, exported)]
+    differences = [
+        f"{file.name}: {difference}" for file in known for difference in _differs(file, exported)
+    ]
     if whole:
         missing = sorted(exported.keys() - {file.name for file in known})
-        told += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
+        differences += [f"{name}: it is missing" for name in missing if _LAW.search(name)]
     # The certificate is read, not compared.
-    aside = {*known, place / f"{spec.name}.cert.json"}
-    others = dict.fromkeys(_visible(file.relative_to(place)) for file in files if file not in aside)
-    return DeployedFiles((*known,), (*told,), (*others,))
+    accounted_files = {*known, place / f"{spec.name}.cert.json"}
+    others = dict.fromkeys(
+        _visible(file.relative_to(place)) for file in files if file not in accounted_files
+    )
+    return DeployedFiles((*known,), (*differences,), (*others,))
 
 
 def _visible(file: Path) -> Path:
@@ -94,9 +100,9 @@ def _export(spec: InteractionDesignSpec, certificate: Certificate, place: Path) 
     """Return what is exported with a certificate of a sampled loop."""
     system = certificate.system
     if system.sample_time is None or (system.clock is not None and system.clock.is_round):
-        about = "continuous time" if system.sample_time is None else "two periods"
+        timing = "continuous time" if system.sample_time is None else "two periods"
         raise NrsDesignError(
-            f"holds a law in steps of one period, and the certificate is about {about}",
+            f"holds a law in steps of one period, and the certificate is about {timing}",
             path=place,
             remedy="name a certificate of a spec with `sampling`, and without `outer_period`",
         )
@@ -107,23 +113,25 @@ def _export(spec: InteractionDesignSpec, certificate: Certificate, place: Path) 
 
 def _differs(file: Path, exported: Mapping[str, bytes]) -> Iterator[str]:
     """Yield the first place in which a file differs, or the release that wrote it, if another."""
-    found, wanted = _read(file), exported[file.name]
-    if found == wanted:
+    found, expected = _read(file), exported[file.name]
+    if found == expected:
         return
-    ours, theirs = _release(wanted), _release(found)
-    if theirs not in (ours, ""):
+    own_release, file_release = _release(expected), _release(found)
+    if file_release not in (own_release, ""):
         yield (
-            f"nrs-design {theirs} wrote it, and what {ours} writes has other bytes (compare it "
-            f"with {theirs}, or export it again)"
+            f"nrs-design {file_release} wrote it, and what {own_release} writes has other bytes "
+            f"(compare it with {file_release}, or export it again)"
         )
         return
-    if b"\0" in wanted:
+    if b"\0" in expected:
         yield "it differs (a library in it must be what the compiler here makes of its sources)"
         return
-    pairs = zip_longest(found.split(b"\n"), wanted.split(b"\n"), fillvalue=b"(end of the file)")
+    pairs = zip_longest(found.split(b"\n"), expected.split(b"\n"), fillvalue=b"(end of the file)")
     number, differing = next((n, pair) for n, pair in enumerate(pairs, 1) if pair[0] != pair[1])
     # Quoted: a line break or an escape is seen.
-    has, should = (repr(line[:_SHOWN].decode("ascii", "backslashreplace")) for line in differing)
+    has, should = (
+        repr(line[:_MAX_CHARACTERS].decode("ascii", "backslashreplace")) for line in differing
+    )
     yield f"line {number}: it has {has}, and the export has {should}"
 
 

@@ -78,9 +78,9 @@ def export_design(
         )
     period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
-        _certified_here(loaded, recorded, progress)
+        _certify_export(loaded, recorded, progress)
         if certificate is None
-        else _certified_by(loaded, certificate, progress)
+        else _recheck_export(loaded, certificate, progress)
     )
     export = replace(export, spec=spec)
     if execution is None or period is None or export.verdict == "rejected":
@@ -111,23 +111,23 @@ def export_proof(
 
 
 def _kept_or_anew(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Result:
-    kept = None if recorded is None else run_kept(loaded, recorded, progress)
-    return kept or run_certification(loaded, progress=progress)
+    recorded_result = None if recorded is None else run_kept(loaded, recorded, progress)
+    return recorded_result or run_certification(loaded, progress=progress)
 
 
-def _certified_here(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Export:
+def _certify_export(loaded: LoadedSpec, recorded: Recorded | None, progress: Progress) -> Export:
     result = _kept_or_anew(loaded, recorded, progress)
     verdict = str(result.certification.verdict)
     assert result.designed is not None, "an interaction design"
     if result.certificate is None or verdict != "proved":
-        where = result.certification.refuted_in
-        aside = "" if where is None else f", and refuted {where}"
-        reason = f"the design is not proved: {verdict}{aside}"
+        contact = result.certification.refuted_in
+        contact_note = "" if contact is None else f", and refuted {contact}"
+        reason = f"the design is not proved: {verdict}{contact_note}"
         return Export(verdict, None, result.certificate, reason, result.design)
     return _proved(result.designed, result.certificate)
 
 
-def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
+def _recheck_export(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     progress("re-check")
     checked = verify(file, loaded)
     if checked.certificate is None or checked.fault is not None:
@@ -140,8 +140,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)
     if found.verdict != "proved":
-        aside = "" if found.refuted_in is None else f": it is refuted {found.refuted_in}"
-        return Export("inconclusive", None, found, f"{file} proves nothing{aside}", design)
+        contact_note = "" if found.refuted_in is None else f": it is refuted {found.refuted_in}"
+        return Export("inconclusive", None, found, f"{file} proves nothing{contact_note}", design)
     fault = find_mismatch(design, found)
     if fault is not None:
         return Export("rejected", None, None, f"{file} {fault}")
@@ -154,16 +154,19 @@ def _proved(designed: Designed, certificate: Certificate) -> Export:
     return Export("proved", record, certificate, design=design, designed=designed)
 
 
-def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:
+def _period(
+    loaded: LoadedSpec, spec: InteractionDesignSpec, requested: Fraction | None
+) -> Fraction:
     """Return the sample time of the spec, or the requested one, in s."""
-    said = None if spec.sampling is None else spec.sampling.period.exact
-    if asked is not None and said is not None and asked != said:
+    declared_period = None if spec.sampling is None else spec.sampling.period.exact
+    if requested is not None and declared_period is not None and requested != declared_period:
         raise DesignError(
-            f"the spec samples every {exact_text(said)} s, not every {exact_text(asked)} s",
+            f"the spec samples every {exact_text(declared_period)} s, "
+            f"not every {exact_text(requested)} s",
             path=loaded.path,
             remedy="leave --sample-time out, or change `sampling` in the spec",
         )
-    period = said or asked
+    period = declared_period or requested
     if period is None:
         raise DesignError(
             "nothing says when a processor runs the law",

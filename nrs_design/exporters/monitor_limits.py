@@ -43,8 +43,8 @@ class MonitorLimits:
     torque: Fraction  # Largest torque in N m
     command: Fraction | None  # Saturation limit; None without one in the spec
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
-    stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
-    follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
+    dwell_times: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
+    successors: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # Bounds on torque and angle; None without them in the spec
     # Region of decay with a saturating command; None without a proof of one.
     region: MonitoredRegion | None
@@ -58,7 +58,7 @@ def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
     record, spec, modes = export.shipped(), export.spec, law.modes
     assert spec is not None
     assert record.sample_time is not None
-    period, allowed = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
+    period, transitions = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
     command = spec.limits.command
     region = region_of(export, law)
     sector, (youngest, oldest) = sector_of(spec), record.delay or (0, 0)
@@ -67,9 +67,10 @@ def monitor_limits(export: Export, law: StepLaw) -> MonitorLimits:
         torque=float32_not_above(spec.limits.torque.not_above),
         command=None if command is None else float32_not_above(command.not_above),
         age=record.delay,
-        stays=tuple(_stay(spec, name, period) for name in modes),
-        follows=tuple(
-            tuple(allowed is None or a == b or (a, b) in allowed for b in modes) for a in modes
+        dwell_times=tuple(_stay(spec, name, period) for name in modes),
+        successors=tuple(
+            tuple(transitions is None or a == b or (a, b) in transitions for b in modes)
+            for a in modes
         ),
         sector=None if isinstance(sector, str) else sector,
         region=None if isinstance(region, str) else region,
@@ -92,24 +93,24 @@ def _left_out(
     sector: Sector | str,
     region: MonitoredRegion | str,
 ) -> tuple[str, ...]:
-    said = []
+    sentences = []
     if isinstance(sector, str):
-        said.append(f"Stiffness, and whether contact is kept: {sector}.")
+        sentences.append(f"Stiffness, and whether contact is kept: {sector}.")
     if isinstance(region, str):
-        said.append(f"The region of a proof in which the command saturates: {region}.")
+        sentences.append(f"The region of a proof in which the command saturates: {region}.")
     if spec.limits.command is None:
-        said.append("Saturation: the spec has no `limits: command`.")
+        sentences.append("Saturation: the spec has no `limits: command`.")
     if record.delay is None:
-        said.append("Age of the force sample: the spec has no `sampling`.")
+        sentences.append("Age of the force sample: the spec has no `sampling`.")
     if spec.sampling is not None and spec.sampling.misses is not None:
-        said.append(
+        sentences.append(
             "How many deadlines are missed, and what is commanded then: a period without a step "
             "is a longer step of time here, and beyond what the caller accepts."
         )
     if spec.switching.names_contacts:
-        said.append("Rules of switching that name contacts: what is touched is not known.")
+        sentences.append("Rules of switching that name contacts: what is touched is not known.")
     return (
-        *said,
+        *sentences,
         "Dead time of the motion: `nrs-design audit` fits it to a log. Noise of the torque: its "
         "largest value counts as it is read.",
     )
@@ -117,7 +118,7 @@ def _left_out(
 
 # Margin for roundings, over V. Entries and rows lose some 2^-24 of themselves.
 ROOM = Fraction(1, 64)
-_NONE = (
+_NO_INITIAL_FORCE = (
     "the certificate has no `initial_force`, from which motions decay although commands saturate"
 )
 
@@ -142,11 +143,11 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
     """Return the region of the proof, or why it is not monitored; the law is the one that ships."""
     certificate, spec, design = export.certificate, export.spec, export.design
     if certificate is None or spec is None or design is None:
-        return _NONE
-    shown = (item for item in certificate.statements if item.shows is Shows.REGION)
-    evidence, system = next(shown, None), certificate.system
+        return _NO_INITIAL_FORCE
+    regions = (item for item in certificate.statements if item.shows is Shows.REGION)
+    evidence, system = next(regions, None), certificate.system
     if evidence is None or evidence.quadratic is None or system.sample_time is None:
-        return _NONE
+        return _NO_INITIAL_FORCE
     if spec.sampling is None or spec.sampling.jitter is not None:
         return "periods are not of one length, and the speed is not known from the way of one"
     if max(spec.late) > 0:
@@ -170,8 +171,8 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
         for tau in (motor.time_constant.low, motor.time_constant.high)
         for E in exponential_between(-T / tau)
     ]
-    touched = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
-    found = [e.stiffness for e in build_environments(spec) if e.name in touched]
+    contacts = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
+    found = [e.stiffness for e in build_environments(spec) if e.name in contacts]
     low, high = min(k.low for k in found), max(k.high for k in found)
     return MonitoredRegion(
         rows,
@@ -186,14 +187,14 @@ def region_of(export: Export, law: StepLaw) -> MonitoredRegion | str:
 
 def _factor(form: IntegerMatrix, power: int) -> tuple[tuple[Fraction, ...], ...] | None:
     """Return U with ``U'U > Q`` of single precision, checked exactly; None where none is found."""
-    wanted = [[Fraction(v, 2**power) for v in row] for row in form]
-    scale = np.array([float(row[i]) ** 0.5 for i, row in enumerate(wanted)])
-    unit = np.array([[float(v) for v in row] for row in wanted]) / np.outer(scale, scale)
+    target = [[Fraction(v, 2**power) for v in row] for row in form]
+    scale = np.array([float(row[i]) ** 0.5 for i, row in enumerate(target)])
+    unit = np.array([[float(v) for v in row] for row in target]) / np.outer(scale, scale)
     U = np.linalg.cholesky(unit * float(1 + ROOM)).T * scale
     rows = tuple(tuple(round_float32(Fraction(float(v))) for v in row) for row in U)
     columns = [*zip(*rows, strict=True)]
-    more = [
+    surplus = [
         [sum(map(mul, a, b)) - (1 + ROOM / 2) * v for b, v in zip(columns, row, strict=True)]
-        for a, row in zip(columns, wanted, strict=True)
+        for a, row in zip(columns, target, strict=True)
     ]
-    return rows if is_positive_definite(RationalMatrix.from_rows(more).numerators) else None
+    return rows if is_positive_definite(RationalMatrix.from_rows(surplus).numerators) else None

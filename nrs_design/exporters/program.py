@@ -25,7 +25,7 @@ class Program:
     names: CNames  # Names in C
 
     @property
-    def about(self) -> tuple[str, ...]:
+    def description(self) -> tuple[str, ...]:
         """What every exported file says of itself."""
         return header_lines(self.record)
 
@@ -50,7 +50,7 @@ SPRUNG = (
     "the point of rest of the proof. Called with tissue pressed in, it moves that point there: a "
     "force of up to Kt times the depth stays, and changes with stiffness and controller."
 )
-PLACED = (
+POSITION_START = (
     "init knows nothing of the joint, and takes the error of the sample before for zero: let "
     "`position` of the first step be the angle of the joint, or the PD differentiates all that "
     "lies between them, and the joint moves there at once."
@@ -59,7 +59,7 @@ STREAMED = (
     "The command is a position, and `position` goes into it as it is: let that of the first step "
     "be the angle of the joint, or the robot moves there at once."
 )
-TWICE = (
+SINGLE_INPUT = (
     "What the hand commands goes in once: move `position` and leave `velocity_command` zero, or "
     "hold `position` while an impedance controller takes `velocity_command`."
 )
@@ -70,9 +70,9 @@ def start_lines(law: StepLaw) -> Iterator[str]:
     inputs = {value.name for value in law.inputs}
     if "position" in inputs:
         differentiates = any(state.name == "error_before" for state in law.states)
-        yield PLACED if differentiates else STREAMED
+        yield POSITION_START if differentiates else STREAMED
     if {"position", "velocity_command"} <= inputs:
-        yield TWICE
+        yield SINGLE_INPUT
     if "Kt" in law.coefficient:
         yield SPRUNG
 

@@ -36,9 +36,12 @@ class Gain(_Frozen):
     @model_validator(mode="after")
     def _check_agreement(self) -> Gain:
         bits = int(self.float32_bits, 16)
-        held: float = struct.unpack(">f", bits.to_bytes(4, "big"))[0]
+        stored: float = struct.unpack(">f", bits.to_bytes(4, "big"))[0]
         # The text tells -0 from 0.
-        if repr(held) != repr(self.float32) or exact_decimal(Fraction(self.float32)) != self.exact:
+        if (
+            repr(stored) != repr(self.float32)
+            or exact_decimal(Fraction(self.float32)) != self.exact
+        ):
             raise ValueError(f"the three forms of gain {self.name} are not the same number")
         return self
 
@@ -201,7 +204,7 @@ def _sample_time(record: ExportRecord) -> str:
     text = f"{record.sample_time.exact} s"
     if record.delay is None:
         return text
-    least, most = record.delay
-    ages = str(least) if least == most else f"{least} to {most}"
-    text = f"{text}, force sample {ages} sample{'' if most == 1 else 's'} old"
+    lowest, highest = record.delay
+    ages = str(lowest) if lowest == highest else f"{lowest} to {highest}"
+    text = f"{text}, force sample {ages} sample{'' if highest == 1 else 's'} old"
     return text if record.timing is None else f"{text}; {record.timing}"

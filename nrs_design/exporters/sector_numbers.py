@@ -32,31 +32,35 @@ def sector_macros(sector: Sector) -> Iterator[Macro]:
     """Yield name, number and comment of each number of the test."""
     yield (
         "TORQUE_NOISE",
-        _more(sector.torque_noise),
+        _enlarge(sector.torque_noise),
         f"{unit('N*m')}, a reading of the torque is off by",
     )
-    yield "ANGLE_NOISE", _more(sector.angle_noise), f"{unit('rad')}, its angle is off by"
+    yield "ANGLE_NOISE", _enlarge(sector.angle_noise), f"{unit('rad')}, its angle is off by"
     yield "ROUNDING", ROUNDING, "of an angle, single precision"
-    yield "YIELD_MOST", _more(1 / sector.low), f"{unit('rad/(N*m)')}, at the least stiffness"
-    yield "YIELD_LEAST", _less(1 / sector.high), f"{unit('rad/(N*m)')}, at the largest stiffness"
+    yield "YIELD_MOST", _enlarge(1 / sector.low), f"{unit('rad/(N*m)')}, at the least stiffness"
+    yield "YIELD_LEAST", _reduce(1 / sector.high), f"{unit('rad/(N*m)')}, at the largest stiffness"
     yield (
         "JUDGED_HIGH",
-        _less(DETECTION_FACTOR * sector.high, 4),
+        _reduce(DETECTION_FACTOR * sector.high, 4),
         f"{unit('N*m/rad')}, below it for certain counts as judged",
     )
-    yield "JUDGED_LOW", _more(sector.low / DETECTION_FACTOR, 4), f"{unit('N*m/rad')}, and above it"
+    yield (
+        "JUDGED_LOW",
+        _enlarge(sector.low / DETECTION_FACTOR, 4),
+        f"{unit('N*m/rad')}, and above it",
+    )
     if sector.surface_speed:
-        yield "SURFACE_SPEED", _more(sector.surface_speed), f"{unit('rad/s')}, of the surface"
+        yield "SURFACE_SPEED", _enlarge(sector.surface_speed), f"{unit('rad/s')}, of the surface"
     if sector.speed is not None:
-        yield "JOINT_SPEED", _more(sector.speed), f"{unit('rad/s')}, of the joint"
-        yield "JOINT_NOISE", _more(2 * sector.reading), f"{unit('rad')}, two readings of it"
+        yield "JOINT_SPEED", _enlarge(sector.speed), f"{unit('rad/s')}, of the joint"
+        yield "JOINT_NOISE", _enlarge(2 * sector.reading), f"{unit('rad')}, two readings of it"
 
 
-def _more(value: Fraction, slacks: int = 1) -> Fraction:
+def _enlarge(value: Fraction, slacks: int = 1) -> Fraction:
     return float32_not_below(value * (1 + slacks * SLACK) + TINY)
 
 
-def _less(value: Fraction, slacks: int = 1) -> Fraction:
+def _reduce(value: Fraction, slacks: int = 1) -> Fraction:
     return float32_not_above(value * (1 - slacks * SLACK))
 
 
@@ -84,11 +88,11 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
     )
     for factor in FACTORS:
         need = _need(sector, factor, Fraction(0))
-        more = _need(sector, factor, travel) - need
+        increase = _need(sector, factor, travel) - need
         torque = unit("N*m")
         yield (
-            f"c = {float(factor):g}: N = {upper(need, 3)} {torque}, and {upper(more, 2)} {torque} "
-            "for d"
+            f"c = {float(factor):g}: N = {upper(need, 3)} {torque}, "
+            f"and {upper(increase, 2)} {torque} for d"
         )
     yield (
         f"In `judged` of `sample` samples {float(DETECTION_FACTOR):g} times the range would have "

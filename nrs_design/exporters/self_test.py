@@ -40,7 +40,7 @@ class StepCases:
 
 
 def self_test(
-    law: StepLaw, cases: StepCases, names: CNames, about: tuple[str, ...]
+    law: StepLaw, cases: StepCases, names: CNames, description: tuple[str, ...]
 ) -> dict[str, bytes]:
     """Return header and source of the self-test, by their endings."""
     logic = [] if law.logic is None else [*logic_cases(law.logic)]
@@ -57,8 +57,8 @@ def self_test(
     size = rows.nbytes + 4 * sum(map(len, logic))
     words = _words(count, size, names, " of the law and of its mode logic" if logic else "")
     heads = {
-        "h": block_comment((*about, *words), C_TEST_HEADER),
-        "c": block_comment((*about, f"More is in {names.spec}_test.h."), C_TEST),
+        "h": block_comment((*description, *words), C_TEST_HEADER),
+        "c": block_comment((*description, f"More is in {names.spec}_test.h."), C_TEST),
     }
     return {
         f"_test.{end}": fill_template(f"test.{end}.j2", comment=head, **values).encode()
@@ -76,10 +76,10 @@ def program_macro(names: CNames) -> str:
     return f"{names.upper}_TEST_PROGRAM"
 
 
-def _words(count: int, size: int, names: CNames, of: str) -> tuple[str, ...]:
+def _words(count: int, size: int, names: CNames, subject: str) -> tuple[str, ...]:
     return (
         "",
-        f"{names.lower}_self_test computes {count} steps{of} from inputs and states stored "
+        f"{names.lower}_self_test computes {count} steps{subject} from inputs and states stored "
         f"with it ({size} bytes of constants), and compares every bit. It changes no state of the "
         "caller.",
         f"Compiled with -D{program_macro(names)}, {names.spec}_test.c is a program that runs it.",
@@ -114,12 +114,12 @@ def _draw(
     """Return numbers of many sizes up to a scale; a quarter of the wild ones are no such."""
     centered = (bits >> np.uint64(40)).astype(np.float32) - np.float32(2**23)
     smaller = np.ldexp(np.float32(1), -(kinds >> np.uint64(60)).astype(np.int32))
-    plain = centered * np.float32(2.0**-23) * scale * smaller
+    ordinary = centered * np.float32(2.0**-23) * scale * smaller
     low = bits.astype(np.uint32)
     special = np.array(SPECIAL, np.uint32)[low % len(SPECIAL)] | (low & np.uint32(1 << 31))
     subnormal = low & np.uint32(0x807FFFFF)
     kind = np.where(wild, kinds % 12, 12)
-    odd = np.select([kind == 0, kind == 1, kind == 2], [low, special, subnormal], _bits(plain))
+    odd = np.select([kind == 0, kind == 1, kind == 2], [low, special, subnormal], _bits(ordinary))
     return odd.astype(np.uint32).view(np.float32)
 
 
@@ -130,25 +130,25 @@ def _bits(values: Single) -> NDArray[np.uint32]:
 def logic_cases(logic: StepLogic) -> Iterator[list[int | str]]:
     """Yield mode and held before, signals as bits in hexadecimal, mode and held after."""
     bits = iter(np.random.PCG64(SEED).random_raw(LOGIC_COUNT * (2 + len(logic.signals))).tolist())
-    near = {
+    thresholds = {
         name: [float(b.threshold) for s in logic.switches for b in s.bounds if b.signal == name]
         for name in logic.signals
     }
     for _ in range(LOGIC_COUNT):
         mode = next(bits) % (len(logic.hold_samples) + 1)
         stay = logic.hold_samples[mode] if mode < len(logic.hold_samples) else 0
-        held = (0, max(stay - 1, 0), stay, stay + 1, LONGEST)[next(bits) % 5]
-        signals = [_signal(next(bits), near[name]) for name in logic.signals]
+        dwell = (0, max(stay - 1, 0), stay, stay + 1, LONGEST)[next(bits) % 5]
+        signals = [_signal(next(bits), thresholds[name]) for name in logic.signals]
         values = np.array(signals, np.uint32).view(np.float32).tolist()
-        after = logic.step(mode, held, dict(zip(logic.signals, values, strict=True)))
-        yield [mode, held, *(f"{one:08x}" for one in signals), *after]
+        after = logic.step(mode, dwell, dict(zip(logic.signals, values, strict=True)))
+        yield [mode, dwell, *(f"{one:08x}" for one in signals), *after]
 
 
-def _signal(bits: int, near: list[float]) -> int:
+def _signal(bits: int, thresholds: list[float]) -> int:
     """Return a signal as bits: a threshold or a number next to one, or what is no number."""
     kind, bits = bits % 16, bits // 16
     if kind < len(LOGIC_SPECIAL):
         return LOGIC_SPECIAL[kind]
-    (threshold,) = struct.unpack(">I", struct.pack(">f", near[bits % len(near)]))
+    (threshold,) = struct.unpack(">I", struct.pack(">f", thresholds[bits % len(thresholds)]))
     # Far away, too: with another exponent or the other sign.
     return (int(threshold) + (-1, 0, 1)[kind % 3]) ^ (0, 0, 1 << 23, 1 << 31)[kind % 4]

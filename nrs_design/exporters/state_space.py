@@ -32,9 +32,9 @@ def design_state_spaces(designed: Designed) -> StateSpaces:
     """Return the parts of a design; a filter of the force sensor is in none of them."""
     parts = run_linear_parts(designed)
     return StateSpaces(
-        _of_part(parts.actuator),
-        _of_part(parts.motion_loop),
-        {part.name: _of_part(part) for part in parts.controllers},
+        _make_part_space(parts.actuator),
+        _make_part_space(parts.motion_loop),
+        {part.name: _make_part_space(part) for part in parts.controllers},
     )
 
 
@@ -44,10 +44,12 @@ def mode_state_spaces(system: SwitchedSystem) -> dict[str, Any]:
     Inputs are the disturbances of the system, if it has any, outputs its states; in discrete time
     dt is the sample time in s, or True where a step has no length.
     """
-    return {mode.name: _of_mode(system, index, mode) for index, mode in enumerate(system.modes)}
+    return {
+        mode.name: _make_mode_space(system, index, mode) for index, mode in enumerate(system.modes)
+    }
 
 
-def _of_mode(system: SwitchedSystem, index: int, mode: Mode) -> Any:
+def _make_mode_space(system: SwitchedSystem, index: int, mode: Mode) -> Any:
     n = len(mode.A.numerators)
     A = np.array(mode.A.floats())
     columns = [np.array(channel.columns[index].floats()) for channel in system.channels]
@@ -58,7 +60,7 @@ def _of_mode(system: SwitchedSystem, index: int, mode: Mode) -> Any:
     return _state_space(mode.name, A, B, np.eye(n), np.zeros((n, B.shape[1])), dt)
 
 
-def _of_part(part: LinearPart) -> Any:
+def _make_part_space(part: LinearPart) -> Any:
     outputs = [name for name, _ in part.outputs]
     parts = part.A, part.B, part.C, part.D
     return _state_space(part.name, *parts, 0, inputs=[part.input[0]], outputs=outputs)
@@ -69,5 +71,5 @@ def _state_space(name: str, *matrices: Any, **labels: Any) -> Any:
     from nrs_design.control_library import control
 
     # Points in names have a meaning of their own in python-control.
-    plain = name.replace(".", "_")
-    return control.StateSpace(*matrices, remove_useless_states=False, name=plain, **labels)
+    label = name.replace(".", "_")
+    return control.StateSpace(*matrices, remove_useless_states=False, name=label, **labels)

@@ -51,8 +51,8 @@ class CNames:
 
     def coefficient(self, coefficient: Coefficient, controller: str = "") -> str:
         """Return the macro of a coefficient; of one that each mode has, with a controller."""
-        of = f"_OF_{_identifier(controller).upper()}" if controller else ""
-        return f"{self.upper}_{coefficient.name.upper()}{of}"
+        suffix = f"_OF_{_identifier(controller).upper()}" if controller else ""
+        return f"{self.upper}_{coefficient.name.upper()}{suffix}"
 
     @property
     def modes(self) -> str:
@@ -76,8 +76,8 @@ class CNames:
     def stays(self, law: StepLaw) -> dict[str, int]:
         """Return the macros of mode and stays of a mode logic with their numbers."""
         assert law.logic is not None
-        holds = zip(law.modes, law.logic.hold_samples, strict=True)
-        return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in holds}}
+        hold_times = zip(law.modes, law.logic.hold_samples, strict=True)
+        return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in hold_times}}
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
         """Return every coefficient of a law with its number, by its macro."""
@@ -122,8 +122,8 @@ def block_comment(lines: Iterable[str], first: bytes) -> str:
 
 def harmless(text: str) -> str:
     """Return a text that neither ends a comment nor begins one: printable ASCII, no trigraphs."""
-    plain = printable(" ".join(text.split())).encode("ascii", "backslashreplace").decode()
-    return re.sub(r"\?(?=\?)", "? ", plain.replace("*/", "* /").replace("/*", "/ *"))
+    ascii_text = printable(" ".join(text.split())).encode("ascii", "backslashreplace").decode()
+    return re.sub(r"\?(?=\?)", "? ", ascii_text.replace("*/", "* /").replace("/*", "/ *"))
 
 
 def fill_template(name: str, **values: object) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.ownership import check_name, write_certificate
 from nrs_design.errors import OutputError
-from nrs_design.exporters import Format, format_of, remarks_on, rendered
+from nrs_design.exporters import Format, find_remarks, format_of, rendered
 from nrs_design.output import check_place, write_outputs
 
 if TYPE_CHECKING:
@@ -67,4 +67,4 @@ def write_export(
         write_certificate(result.certificate, spec, proof)
     kinds = format_of(format_).files
     write_outputs([(path, contents[end], kinds[end]) for end, path in files.items()])
-    return remarks_on(format_, contents)
+    return find_remarks(format_, contents)

@@ -24,9 +24,9 @@ class Linked(str):
 
     def __new__(cls, text: str, line: int = 0, section: str = "") -> Self:
         """Attach a line or a section to a text."""
-        made = super().__new__(cls, text)
-        made.line, made.section = line, section
-        return made
+        linked_text = super().__new__(cls, text)
+        linked_text.line, linked_text.section = line, section
+        return linked_text
 
 
 class State(StrEnum):
@@ -140,7 +140,7 @@ class Report:
     date: datetime.date | None = None
 
     @property
-    def listed(self) -> int:
+    def line_count(self) -> int:
         """Number of lines of the spec in the report; other lines have no links."""
         blocks = (block for section in self.sections for block in section.blocks)
         return max((len(block.lines) for block in blocks if isinstance(block, Listing)), default=0)

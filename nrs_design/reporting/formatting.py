@@ -42,19 +42,19 @@ def polynomial_text(coefficients: Sequence[float], digits: int = 5) -> str:
     return (" + ".join(terms) or "0").replace("+ -", "- ")
 
 
-def shortened(names: Sequence[str], limit: int = 12) -> str:
+def list_first(names: Sequence[str], limit: int = 12) -> str:
     """List names, only the first of many."""
-    shown = ", ".join(names[:limit])
-    return shown if len(names) <= limit else f"{shown} and {len(names) - limit} more"
+    text = ", ".join(names[:limit])
+    return text if len(names) <= limit else f"{text} and {len(names) - limit} more"
 
 
 def drawable(text: str) -> str:
     """Return `visible` text with escapes for what the font of figures has no letter."""
-    shown = visible(text)
-    if shown.isascii():
-        return shown
+    visible_text = visible(text)
+    if visible_text.isascii():
+        return visible_text
     letters = _letters()
-    return "".join(c if ord(c) in letters else escaped(c) for c in shown)
+    return "".join(c if ord(c) in letters else escaped(c) for c in visible_text)
 
 
 def wrapped_label(text: str, width: int) -> str:

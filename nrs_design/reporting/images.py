@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
-def to_svg(illustration: Illustration) -> str:
+def render_svg(illustration: Illustration) -> str:
     """Return an ``<svg>`` element, the same bytes for the same figure.
 
     Its ids begin with the illustration's name: matplotlib names the outline of a letter alike in
@@ -32,7 +32,7 @@ def to_svg(illustration: Illustration) -> str:
     colours are those of the page, which knows light and dark, and the axes are told to its script.
     """
     figure, prefix = illustration.figure, illustration.name
-    with _named(figure) as titles:
+    with _label_elements(figure) as titles:
         svg = _savefig(figure)
     svg = svg[svg.index("<svg") :].rstrip()
     themed = _is_themed(figure)
@@ -57,7 +57,7 @@ def to_svg(illustration: Illustration) -> str:
 
 
 @contextmanager
-def _named(figure: Figure) -> Iterator[dict[str, str]]:
+def _label_elements(figure: Figure) -> Iterator[dict[str, str]]:
     """Give all that has a label an id for a while; yield the labels by these ids."""
     labelled: list[tuple[Artist, str]] = [
         (artist, str(artist.get_label()))
@@ -106,13 +106,13 @@ def _is_numeric(axes: Axes) -> bool:
     )
 
 
-def to_svg_file(figure: Figure) -> str:
+def render_svg_file(figure: Figure) -> str:
     """Return a standalone SVG file, marked as ours; the same text for the same figure."""
-    declaration, _, rest = _savefig(figure).partition("\n")
-    return f"{declaration}\n{SVG_MARK}{rest}"
+    declaration, _, element = _savefig(figure).partition("\n")
+    return f"{declaration}\n{SVG_MARK}{element}"
 
 
-def to_png(figure: Figure, dpi: int = 200) -> bytes:
+def render_png(figure: Figure, dpi: int = 200) -> bytes:
     """Return the figure as a PNG image that says who made it, without a date."""
     buffer = io.BytesIO()
     with figure_style():

@@ -43,8 +43,8 @@ def remedies_section(
         path = Path(result.loaded.path.name)
         lists["Why it is not proved"] = blocked_lines(blocked, path)
     margins = margins or ProofMargins()
-    said = tuple(f"{line[0].upper()}{line[1:]}." for line in margin_lines(margins))
-    lists["How far a proof reaches"] = said
+    sentences = tuple(f"{line[0].upper()}{line[1:]}." for line in margin_lines(margins))
+    lists["How far a proof reaches"] = sentences
     box, dwell = margins.box is not None, margins.dwell is not None
     if steps := next_steps(result, margin=box, shortest_dwell=dwell):
         lists["Next steps"] = (*steps[:-1], _DESIGN, steps[-1])
@@ -63,14 +63,15 @@ def margin_lines(margins: ProofMargins) -> Iterator[str]:
 
 
 def _box_text(box: Bracket) -> str:
-    beyond = f"; {box.end}" if box.end else ""
+    outcome = f"; {box.end}" if box.end else ""
     if box.refuted is not None:
-        beyond = f"; scaled by {rounded_up(box.refuted)} they are refuted{_in(box.refuted_in)}"
+        contact = _contact_phrase(box.refuted_in)
+        outcome = f"; scaled by {rounded_up(box.refuted)} they are refuted{contact}"
     if box.proved is None or box.proof is None:
-        return f"not even the nominal values are proved{beyond}"
+        return f"not even the nominal values are proved{outcome}"
     return (
         f"scaled by {rounded_down(box.proved)} about their nominal values, all ranges are proved "
-        f"({box.proof.method}){beyond}"
+        f"({box.proof.method}){outcome}"
     )
 
 
@@ -81,44 +82,46 @@ def _dwell_text(dwell: Bracket) -> str:
     refuted = "" if dwell.proved == 0 else "; no dwell time was refuted"
     if dwell.refuted is not None:
         end = rounded_down(dwell.refuted, "s")
-        refuted = f"; {end} and all shorter ones are refuted{_in(dwell.refuted_in)}"
+        refuted = f"; {end} and all shorter ones are refuted{_contact_phrase(dwell.refuted_in)}"
     return f"{proved}{refuted}"
 
 
 def _loop_lines(loop: MarginBrackets) -> Iterator[str]:
-    more = "" if loop.command is None else "; without disturbances, no bound was looked at"
+    caveat = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
-        refuted = f"refuted from *{_in(loop.delay.refuted_in)}"
-        said = _ends(loop.delay, _samples, "proved up to *", refuted)
-        yield f"longest delay of the force sample: {said}{more}"
+        refuted = f"refuted from *{_contact_phrase(loop.delay.refuted_in)}"
+        ends = _ends(loop.delay, _samples, "proved up to *", refuted)
+        yield f"longest delay of the force sample: {ends}{caveat}"
     if loop.period is not None:
-        refuted = f"* is refuted{_in(loop.period.refuted_in)}"
-        said = _ends(loop.period, lambda seconds: nearly(seconds, "s"), "* is proved", refuted)
-        yield f"period: {said} (each for itself, nothing is said of those in between{more})"
+        refuted = f"* is refuted{_contact_phrase(loop.period.refuted_in)}"
+        ends = _ends(loop.period, lambda seconds: nearly(seconds, "s"), "* is proved", refuted)
+        yield f"period: {ends} (each for itself, nothing is said of those in between{caveat})"
     if loop.command is not None:
         bounds = loop.command.bounds.items()
-        kept = ", ".join(
+        ranges = ", ".join(
             f"|{name}| <= {rounded_down(end, unit)}" for name, (end, _, unit) in bounds
         )
         broken = ", ".join(nearly(end, unit) for _, (_, end, unit) in bounds)
         yield (
             f"limit of {nearly(loop.command.limit, shown_unit('N*m'))}: proved to be kept for "
-            f"{kept}; a simulated run reaches it at {broken}"
+            f"{ranges}; a simulated run reaches it at {broken}"
         )
 
 
-def _ends(bracket: Bracket, shown: Callable[[Fraction], str], proved: str, refuted: str) -> str:
+def _ends(
+    bracket: Bracket, format_number: Callable[[Fraction], str], proved: str, refuted: str
+) -> str:
     """Return what is proved and what is refuted; a star in these texts is where the number stands.
 
     Where nothing is refuted, say where the search ended.
     """
     first, second = bracket.proved, bracket.refuted
-    holds = "none is proved" if first is None else proved.replace("*", shown(first), 1)
-    fails = bracket.end if second is None else refuted.replace("*", shown(second), 1)
-    return f"{holds}, {fails}"
+    success = "none is proved" if first is None else proved.replace("*", format_number(first), 1)
+    failure = bracket.end if second is None else refuted.replace("*", format_number(second), 1)
+    return f"{success}, {failure}"
 
 
-def _in(contact: str) -> str:
+def _contact_phrase(contact: str) -> str:
     """Say in which contact alone something is refuted, if it is not in any."""
     return f" {contact}" if contact else ""
 
@@ -152,8 +155,8 @@ def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Ite
     command = f"nrs-design certify-switching {name}"
     evidence = certification.evidence
     evidence = evidence or refutes_in_contact(certification.system, certification.statements)
-    alone = evidence is not None and evidence.names_unstable_mode
-    if alone:
+    is_unstable_mode = evidence is not None and evidence.names_unstable_mode
+    if is_unstable_mode:
         yield (
             "A mode is not stable by itself, so no rule of switching helps: change the gains of "
             "its controller, or narrow the range that makes it unstable."
@@ -162,11 +165,11 @@ def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Ite
         yield f"Search longer: {command} --budget 600 (or more --memory, or a --max-degree)"
     if spec.has_ranges and not margin:
         yield f"Find the largest ranges that are proved: {command} --margin"
-    if not alone and not shortest_dwell and _takes_dwell(result):
+    if not is_unstable_mode and not shortest_dwell and _takes_dwell(result):
         yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
     if isinstance(spec, InteractionDesignSpec):
-        chosen = any(c.commands == "velocity" for c in spec.controllers.values())
-        command = "optimize" if chosen else "tune"
+        has_velocity_command = any(c.commands == "velocity" for c in spec.controllers.values())
+        command = "optimize" if has_velocity_command else "tune"
         yield f"See which gains the goals allow: nrs-design {command} {name}"
 
 

@@ -17,7 +17,7 @@ from nrs_design.reporting.document import (
     State,
     Table,
 )
-from nrs_design.reporting.images import to_svg
+from nrs_design.reporting.images import render_svg
 
 # More letters in a row than these do not fit on a telephone, or in one line of a page.
 _NARROW, _LINE = 36, 106
@@ -41,7 +41,7 @@ def render_html(report: Report, origin: str | None = None) -> str:
         loader=PackageLoader("nrs_design.reporting"),
         autoescape=True,
         undefined=StrictUndefined,
-        finalize=_shown,
+        finalize=_escape_invisible,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -66,7 +66,7 @@ def _script(name: str) -> str:
     return text.replace("\r\n", "\n")
 
 
-def _shown(value: object) -> object:
+def _escape_invisible(value: object) -> object:
     """Escape invisible characters in all text that the template writes; markup has none."""
     from markupsafe import Markup
 
@@ -87,7 +87,7 @@ def _block(block: Block) -> dict[str, Any]:
     from markupsafe import Markup
 
     # The only markup that is not escaped: matplotlib's own.
-    svg = Markup(to_svg(block)) if isinstance(block, Illustration) else None
+    svg = Markup(render_svg(block)) if isinstance(block, Illustration) else None
     look = _look(block) if isinstance(block, Table) else ""
     return {"kind": type(block).__name__.lower(), "content": block, "svg": svg, "look": look}
 

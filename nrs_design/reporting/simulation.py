@@ -25,14 +25,14 @@ def metric_rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[l
     limit = f"{limits.get('torque', m['torque_limit']):.4g}"
     # What has a limit is never shown below it, nor as nothing, where it is not.
     yield ["largest torque", four_digits_up(m["peak_torque"]), unit("N m"), limit]
-    above = f"time above {m['torque_limit']:.4g} {unit('N m')}"
-    yield [above, four_digits_up(m["time_above_limit"]), "s", "0"]
+    duration_label = f"time above {m['torque_limit']:.4g} {unit('N m')}"
+    yield [duration_label, four_digits_up(m["time_above_limit"]), "s", "0"]
     yield _peak("largest deflection", m["peak_depth"], "deg", limits.get("deflection"))
     yield _row("time in contact", m["time_in_contact"], "s")
     if m["impedance_rmse"] is not None:
-        wanted = f"off the wanted {m['desired_impedance']:.4g}"
+        target_text = f"off the wanted {m['desired_impedance']:.4g}"
         name = "RMSE of the displayed impedance"
-        yield _row(name, m["impedance_rmse"], unit("N m s/rad"), wanted)
+        yield _row(name, m["impedance_rmse"], unit("N m s/rad"), target_text)
     yield _row("duration", m["duration"], "s")
     for time in m["withdrawal_times"]:
         yield _row("withdrawal from tissue", time, "s")
@@ -54,12 +54,12 @@ def metric_rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[l
 
 def _peak(name: str, value: float, turning: str, limit: float | None) -> list[str]:
     """Return a position or a speed, never below a limit where it is not."""
-    fine, shown = current().fine, unit(turning)
+    fine, unit_text = current().fine, unit(turning)
     if limit is None:
-        return _row(name, fine * value, shown)
-    return [name, four_digits_up(fine * value), shown, f"{fine * limit:.4g}"]
+        return _row(name, fine * value, unit_text)
+    return [name, four_digits_up(fine * value), unit_text, f"{fine * limit:.4g}"]
 
 
-def _row(name: str, value: float, shown_in: str, limit: str = "") -> list[str]:
-    shown = 0.0 if abs(value) < _NOTHING else value
-    return [name, f"{shown:.4g}", shown_in, limit]
+def _row(name: str, value: float, unit_text: str, limit: str = "") -> list[str]:
+    nonzero_value = 0.0 if abs(value) < _NOTHING else value
+    return [name, f"{nonzero_value:.4g}", unit_text, limit]

@@ -23,7 +23,7 @@ BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = CYCLE
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (6, 2, 1.5, 2)))
 # So many series differ in color or marker; more than these are drawn alike.
-TOLD_APART = 24
+MAX_SERIES = 24
 ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
@@ -66,7 +66,7 @@ _SETTINGS = {
 
 # Letters of a paper, in points, and the settings that go with them.
 _PAPER_LETTERS = 8.0
-_SIZES = ("font.size", *(f"{of}.labelsize" for of in ("axes", "xtick", "ytick")))
+_SIZES = ("font.size", *(f"{artist}.labelsize" for artist in ("axes", "xtick", "ytick")))
 _PAPER = dict.fromkeys((*_SIZES, "axes.titlesize", "legend.fontsize"), _PAPER_LETTERS)
 _PAPER["lines.linewidth"] = 1.2
 
@@ -118,14 +118,14 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
     """
 
     @wraps(draw)
-    def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
+    def draw_styled(*args: P.args, **kwargs: P.kwargs) -> Figure:
         with figure_style():
             figure = draw(*args, **kwargs)
             _shrink(figure)
             settle(figure)
             return figure
 
-    return drawn
+    return draw_styled
 
 
 def _shrink(figure: Figure) -> None:
@@ -214,9 +214,9 @@ def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     columns = max(1, min(columns, len(handles), round(66 * sheet.room) // (longest + 6)))
     rows = -(-len(handles) // columns)
     lines = rows + sum(text.count("\n") for text in texts) / columns
-    more = _LEGEND_LINE * (lines - 1) + _LEGEND_GAP * (rows - 1)
-    more *= sheet.letters / _LETTERS
-    figure.set_figheight(figure.get_figheight() + more)
+    extra_height = _LEGEND_LINE * (lines - 1) + _LEGEND_GAP * (rows - 1)
+    extra_height *= sheet.letters / _LETTERS
+    figure.set_figheight(figure.get_figheight() + extra_height)
     figure.legend(handles, texts, loc="outside lower center", ncols=columns)
 
 
@@ -227,26 +227,26 @@ def write_ticks_in_full(figure: Figure) -> None:
     """Replace the formatters of all numeric axes: no offset, no common factor in a corner."""
     from nrs_design.plotting import LogFormatter, ScalarFormatter
 
-    class InFull(ScalarFormatter):
+    class PlainFormatter(ScalarFormatter):
         def format_ticks(self, values: Sequence[float]) -> list[str]:
             distance = float(values[1] - values[0]) if len(values) > 1 else None
-            return [in_full(value, distance or abs(value) or 1.0) for value in values]
+            return [format_tick(value, distance or abs(value) or 1.0) for value in values]
 
-    class InPowers(LogFormatter):
+    class PowerFormatter(LogFormatter):
         def __call__(self, value: float, pos: int | None = None) -> str:
             # Where the axis spans few decades, ticks between powers have labels, too.
-            return in_full(value, abs(value) or 1.0) if super().__call__(value, pos) else ""
+            return format_tick(value, abs(value) or 1.0) if super().__call__(value, pos) else ""
 
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             if isinstance(axis.get_major_formatter(), LogFormatter):
-                axis.set_major_formatter(InPowers(labelOnlyBase=True))
-                axis.set_minor_formatter(InPowers(labelOnlyBase=False))
+                axis.set_major_formatter(PowerFormatter(labelOnlyBase=True))
+                axis.set_minor_formatter(PowerFormatter(labelOnlyBase=False))
             elif isinstance(axis.get_major_formatter(), ScalarFormatter):
-                axis.set_major_formatter(InFull(useOffset=False))
+                axis.set_major_formatter(PlainFormatter(useOffset=False))
 
 
-def in_full(value: float, step: float) -> str:
+def format_tick(value: float, step: float) -> str:
     """Write a tick with the digits that tell it from its neighbour one step away."""
     if abs(value) < 1e-9 * step:
         return "0"

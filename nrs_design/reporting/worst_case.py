@@ -38,7 +38,7 @@ UNDECLARED = (
     "The spec names no disturbances, so the velocity command took any course up to its limit; "
     "with `disturbances` a bound can be certified."
 )
-ABOVE = " (above)"
+UPPER_SIGN = " (above)"
 # Effects that the adversary does not use.
 LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
 _COMMAND = "velocity command"
@@ -64,7 +64,8 @@ def worst_rows(case: WorstCase, spec: InteractionDesignSpec) -> list[list[str]]:
         rows.append(
             [
                 item["output"],
-                lower(Fraction(factor * item["worst_found"]), 4) + ABOVE * item["exceeds_limit"],
+                lower(Fraction(factor * item["worst_found"]), 4)
+                + UPPER_SIGN * item["exceeds_limit"],
                 unit,
                 "–" if limit is None else f"{factor * limit:.4g}",
                 "–" if bound is None else upper(Fraction(factor * bound), 4),
@@ -82,19 +83,19 @@ def worst_case_section(result: Result) -> Section | None:
     try:
         case = run_worst_case(designed, result.certificate)
     except DesignError as error:
-        said = f"{error.message[0].upper()}{error.message[1:]}."
-        return Section(_TITLE, (Paragraph(said),))
+        explanation = f"{error.message[0].upper()}{error.message[1:]}."
+        return Section(_TITLE, (Paragraph(explanation),))
     undeclared = "" if case.declared else f"{UNDECLARED} "
-    said = (
+    explanation = (
         f"{meaning(case)} {undeclared}Not in it: {LEFT_OUT}. Floating point, no part of the proof."
     )
     rows, loaded = [], designed.loaded
-    for name, found, unit, limit, *rest in worst_rows(case, designed.spec):
+    for name, found, unit, limit, *bound_cells in worst_rows(case, designed.spec):
         key = "torque" if name == "force" else name
-        rows.append((name, found, unit, linked(loaded, limit, "limits", key), *rest))
+        rows.append((name, found, unit, linked(loaded, limit, "limits", key), *bound_cells))
     figure = draw_worst(case, case.runs[0], designed.spec)
     blocks = (
-        Paragraph(said),
+        Paragraph(explanation),
         Table("Worst found, limit and bound", COLUMNS, tuple(rows)),
         Illustration("worst-case", "The worst run found", _CAPTION, figure),
     )
@@ -110,8 +111,8 @@ def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]
         return 1e3 * lever_arm, "mm"
     fine = current().fine
     scales = {"N*m": (1.0, "N m"), "rad/s": (fine, "deg/s"), "rad": (fine, "deg")}
-    each = {shown(si): (scale, shown(said)) for si, (scale, said) in scales.items()}
-    return each.get(unit, (1.0, unit))
+    conversions = {shown(si): (scale, shown(display)) for si, (scale, display) in scales.items()}
+    return conversions.get(unit, (1.0, unit))
 
 
 def draw_worst(case: WorstCase, run: WorstRun, spec: InteractionDesignSpec) -> Figure:
@@ -140,8 +141,8 @@ def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | No
     # Of all values over the range of the contact, those that go farthest.
     farthest = values[:, np.abs(values).max(axis=0).argmax()]
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
-    both, signs = (1, -1), (1,) if pushes_only(case.system, output) else (1, -1)
-    limits = () if limit is None else tuple(sign * factor * limit for sign in both)
+    both_signs, signs = (1, -1), (1,) if pushes_only(case.system, output) else (1, -1)
+    limits = () if limit is None else tuple(sign * factor * limit for sign in both_signs)
     bounds = () if bound is None else tuple(sign * factor * bound for sign in signs)
     label = f"{output.name.capitalize()} [{unit}]"
     return Panel(label, {output.name: farthest}, limits, bounds, "certified bound")

@@ -19,7 +19,7 @@ from nrs_design.certificates.catalogue import sentences
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import DesignError, SpecError
-from nrs_design.exporters.build import OUTSIDE
+from nrs_design.exporters.build import UNMODELED_EFFECTS
 from nrs_design.pipeline.design import Designed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
@@ -215,7 +215,7 @@ def _header(name: str, spec: str, sampling: SamplingSpec, notes: Sequence[str]) 
         f"sample time: {exact_text(sampling.period.exact)} s, measurements {age_low} to {age_high} "
         "samples old",
         *notes,
-        *(f"outside the proof: {text}" for text in OUTSIDE),
+        *(f"outside the proof: {text}" for text in UNMODELED_EFFECTS),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
         f"to be given beside this file: {REQUIRED_PARAMETERS}",

@@ -1,7 +1,7 @@
 import pytest
 
 from nrs_design.reporting.figures.simulated import draw_simulated
-from nrs_design.reporting.images import to_png
+from nrs_design.reporting.images import render_png
 from tests.simulation.interactions import IMPEDANCE, PLACED, SAMPLED, simulated, text_of
 from tests.support import document_of, run, spec_in
 
@@ -88,7 +88,7 @@ def test_a_bound_far_away_is_named_not_drawn():
     far = draw_simulated(response, 0.3, 0.14, None, (60.0, False))
     assert "60 N m" in far.axes[0].get_title()
     assert not near.axes[0].get_title()
-    assert to_png(near, 40)[:4] == b"\x89PNG"
+    assert render_png(near, 40)[:4] == b"\x89PNG"
 
 
 ALONE = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}

@@ -203,4 +203,4 @@ def test_optimize_and_gate_end_alike(tmp_path, text, goals, code):
     run("optimize", path, cwd=tmp_path, code=code)
     loaded = read_spec(path)
     found = Examiner(loaded).goals(run_analysis(run_interaction(loaded, "")))
-    assert exit_codes.OF_SEVERITY[max(item.severity for item in found)] == code
+    assert exit_codes.SEVERITY_CODES[max(item.severity for item in found)] == code

@@ -112,7 +112,7 @@ def write_law(folder: Path, record, law: StepLaw, cases) -> tuple[Path, Path, st
     """Write a law and its self-test; both sources come back, and the flag that brings a `main`."""
     names = CNames(record.spec.name)
     program = Program(record, law, names)
-    texts = self_test(law, cases, names, program.about)
+    texts = self_test(law, cases, names, program.description)
     texts |= {".h": header_text(program).encode(), ".c": source_text(program).encode()}
     for ending, content in texts.items():
         (folder / f"{names.spec}{ending}").write_bytes(content)

@@ -178,7 +178,7 @@ def test_a_compiler_that_knows_no_nan_is_refused(tmp_path, sampled_export, flag)
 def test_what_is_monitored_is_what_the_spec_says(sampled_export):
     stays = spec_with("{dwell_time: 2.501 s, longest_dwell_time: 5.001 s}")
     limits = monitor_limits(replace(sampled_export, spec=stays), LAW)
-    assert limits.stays == ((1251, 2500), (1251, 2500))
+    assert limits.dwell_times == ((1251, 2500), (1251, 2500))
     limits = monitor_limits(replace(sampled_export, spec=spec_with()), LAW)
     assert limits.torque <= Fraction(3, 10) < limits.torque * (1 + Fraction(1, 2**22))
     assert (limits.age, limits.command) == ((0, 1), 3000)
@@ -187,9 +187,9 @@ def test_what_is_monitored_is_what_the_spec_says(sampled_export):
 def test_rules_that_name_contacts_are_not_followed(sampled_export):
     spec = spec_with("{transitions: [[insertion, withdrawal]]}")
     limits = monitor_limits(replace(sampled_export, spec=spec), LAW)
-    assert limits.follows == ((True, True), (False, True))
+    assert limits.successors == ((True, True), (False, True))
     rules = spec.switching.model_copy(update={"transitions": (("insertion/a", "withdrawal/b"),)})
     named = replace(sampled_export, spec=spec.model_copy(update={"switching": rules}))
     limits = monitor_limits(named, LAW)
-    assert limits.follows == ((True, True), (True, True))
+    assert limits.successors == ((True, True), (True, True))
     assert [text for text in limits.left_out if "name contacts" in text]

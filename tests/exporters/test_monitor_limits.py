@@ -11,7 +11,7 @@ from nrs_design.controllers.replica import StepProgram
 from nrs_design.exporters.deployed import compare_deployed
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.formats.c import render as render_c
-from nrs_design.exporters.formats.monitor import render, told_kinds
+from nrs_design.exporters.formats.monitor import list_violations, render
 from nrs_design.exporters.monitor_limits import ROOM, MonitoredRegion, monitor_limits, region_of
 from nrs_design.exporters.program import program_of
 from nrs_design.proof.evidence import SaturatedEllipsoid
@@ -167,8 +167,8 @@ def test_what_is_not_monitored_is_said(tmp_path, export):
         limits = monitor_limits(other, law)
         assert limits.region is None
         assert any(said in line for line in limits.left_out)
-        assert "SATURATION" in told_kinds(limits)
-    assert "SATURATION" not in told_kinds(monitor_limits(export, law))
+        assert "SATURATION" in list_violations(limits)
+    assert "SATURATION" not in list_violations(monitor_limits(export, law))
 
 
 def changed(spec, **sampling):

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.controllers.replica import StepProgram, step
 from nrs_design.exporters import program
 from nrs_design.exporters.formats.c import header_text
-from nrs_design.exporters.program import PLACED, Program, sign_lines, start_lines
+from nrs_design.exporters.program import POSITION_START, Program, sign_lines, start_lines
 from nrs_design.exporters.text import CNames
 from tests.exporters.programs import LAWS, law
 from tests.tables import rows
@@ -67,7 +67,7 @@ def test_the_header_says_where_to_start(sampled_export, shape, said):
     text = header_text(Program(sampled_export.record, LAWS[shape], CNames("x")))
     plain = " ".join(text.replace("\n *", " ").split())
     assert all(line in plain for line in said)
-    assert ("PD differentiates all" in plain) == (PLACED in said)
+    assert ("PD differentiates all" in plain) == (POSITION_START in said)
 
 
 def commanded(law, mode, **inputs):

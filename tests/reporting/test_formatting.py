@@ -4,11 +4,11 @@ import pytest
 
 from nrs_design.reporting.formatting import (
     drawable,
+    list_first,
     number,
     polynomial_text,
     root,
     roots,
-    shortened,
     wrapped_label,
 )
 from nrs_design.reporting.simulation import four_digits_up
@@ -32,7 +32,7 @@ def test_polynomial():
 
 
 def test_lists():
-    assert shortened(["a", "b", "c"], 2) == "a, b and 1 more"
+    assert list_first(["a", "b", "c"], 2) == "a, b and 1 more"
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,12 @@ import pytest
 
 from nrs_design.certificates.catalogue import kinds
 from nrs_design.reporting.document import Linked, Table
-from nrs_design.reporting.sections.places import assumed_at, contact_at, linked, mode_at
+from nrs_design.reporting.sections.places import (
+    linked,
+    locate_assumption,
+    locate_contact,
+    locate_mode,
+)
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, SOFT_TISSUE
 from tests.tables import rows
@@ -41,14 +46,14 @@ def test_what_a_spec_does_not_say_leads_nowhere():
     assert not isinstance(linked(loaded, "–", "limits"), Linked)
     assert not isinstance(linked(loaded, "1"), Linked)
     assert isinstance(linked(loaded, "1", "limits", "torque"), Linked)
-    assert assumed_at(kinds()["not-sampled"]) == ()
-    assert assumed_at(kinds()["load"]) == ("actuator", "load_inertia")
+    assert locate_assumption(kinds()["not-sampled"]) == ()
+    assert locate_assumption(kinds()["load"]) == ("actuator", "load_inertia")
 
 
 def test_a_mode_leads_to_its_matrix_or_its_controller():
     given, design = read_spec(COMMUTING), read_spec(SOFT_TISSUE)
     second = given.spec.modes[1].name
-    assert mode_at(given, f"{second}/k-min") == ("modes", 1)
-    assert mode_at(design, "withdrawal/soft/k-min") == ("controllers", "withdrawal")
-    assert contact_at(design, "withdrawal/soft/k-min") == ("environments", "soft")
-    assert contact_at(given, "anything") == ()
+    assert locate_mode(given, f"{second}/k-min") == ("modes", 1)
+    assert locate_mode(design, "withdrawal/soft/k-min") == ("controllers", "withdrawal")
+    assert locate_contact(design, "withdrawal/soft/k-min") == ("environments", "soft")
+    assert locate_contact(given, "anything") == ()

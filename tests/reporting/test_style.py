@@ -1,12 +1,12 @@
-from nrs_design.reporting.images import to_png, to_svg_file
-from nrs_design.reporting.style import TOLD_APART, color, curve, legend, marker, new_axes, styled
+from nrs_design.reporting.images import render_png, render_svg_file
+from nrs_design.reporting.style import MAX_SERIES, color, curve, legend, marker, new_axes, styled
 
 FORMULA = r"a$\frac{$ and $x$"
 
 
 def test_so_many_series_are_told_apart():
-    looks = {(color(i), marker(i)) for i in range(TOLD_APART)}
-    assert len(looks) == TOLD_APART
+    looks = {(color(i), marker(i)) for i in range(MAX_SERIES)}
+    assert len(looks) == MAX_SERIES
 
 
 def test_curves_on_top_of_each_other_show_their_markers_in_turn():
@@ -28,7 +28,7 @@ def named(names):
 
 def test_a_name_is_no_formula():
     figure = named([FORMULA, "$$"])
-    assert to_png(figure) == to_png(figure)
+    assert render_png(figure) == render_png(figure)
     assert [t.get_text() for t in figure.legends[0].get_texts()] == [FORMULA, "$$"]
     assert not any(t.get_parse_math() for t in figure.legends[0].get_texts())
 
@@ -53,4 +53,4 @@ def test_letters_that_the_font_lacks_are_escaped():
     """matplotlib would warn and draw a box."""
     figure = named(["中", "b"])
     assert figure.legends[0].get_texts()[0].get_text() == "\\u4e2d"
-    assert to_svg_file(figure) == to_svg_file(figure)
+    assert render_svg_file(figure) == render_svg_file(figure)

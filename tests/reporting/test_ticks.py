@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.reporting.style import in_full, new_axes, styled
+from nrs_design.reporting.style import format_tick, new_axes, styled
 from tests.tables import rows
 
 
@@ -9,7 +9,7 @@ from tests.tables import rows
     ("value", "step", "text"), rows(__file__, "test_ticks_are_written_in_full")
 )
 def test_ticks_are_written_in_full(value, step, text):
-    assert in_full(value, step) == text
+    assert format_tick(value, step) == text
 
 
 @styled

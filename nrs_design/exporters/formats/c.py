@@ -30,7 +30,7 @@ FLAGS = (
     "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Werror -ffp-contract=off"
 )
 # Signals of the mode logic, as text.
-_SEEN = {"command": "velocity command", "torque": "torque"}
+_SIGNAL_TEXTS = {"command": "velocity command", "torque": "torque"}
 
 
 def render(export: Export) -> dict[str, bytes]:
@@ -39,7 +39,7 @@ def render(export: Export) -> dict[str, bytes]:
     return {
         ".h": header_text(program).encode(),
         ".c": source_text(program).encode(),
-        **self_test(program.law, draw_cases(program.law), program.names, program.about),
+        **self_test(program.law, draw_cases(program.law), program.names, program.description),
     }
 
 
@@ -52,7 +52,7 @@ def header_text(program: Program) -> str:
         law=program.law,
         beyond=(DEFAULT_LIMIT, 2 * DEFAULT_LIMIT),
         units=UNITS,
-        seen=_SEEN,
+        seen=_SIGNAL_TEXTS,
     )
 
 
@@ -62,16 +62,18 @@ def source_text(program: Program) -> str:
     Guards refuse wrong input; no proof covers them.
     """
     law, names = program.law, program.names
-    about = (*program.about, f"More is in {names.spec}.h.")
+    description = (*program.description, f"More is in {names.spec}.h.")
     results = {f"out->{name}": value for name, value in law.outputs.items()}
     results |= {f"state->{name}": value for name, value in law.following.items()}
-    within = [f"is_within({_operand(law, names, v.name)}, {names.limit(v)})" for v in law.values]
+    range_checks = [
+        f"is_within({_operand(law, names, v.name)}, {names.limit(v)})" for v in law.values
+    ]
     return fill_template(
         "law.c.j2",
-        comment=block_comment(about, C_SOURCE),
+        comment=block_comment(description, C_SOURCE),
         names=names,
         law=law,
-        guards=[f"(in->mode < {names.modes})", *within],
+        guards=[f"(in->mode < {names.modes})", *range_checks],
         operations=[(one.name, _expression(law, names, one)) for one in law.operations],
         results=[(place, _operand(law, names, value)) for place, value in results.items()],
     )
@@ -99,7 +101,7 @@ def _operand(law: StepLaw, names: CNames, name: str) -> str:
 
 def _header_lines(program: Program) -> Iterator[str]:
     record, law, names = program.record, program.law, program.names
-    yield from program.about
+    yield from program.description
     yield ""
     init = f"{names.lower}_init once, then " if law.states else ""
     yield f"Call {init}{names.lower}_step at every sample. Compile with"

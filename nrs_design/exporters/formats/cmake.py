@@ -22,7 +22,7 @@ def render(export: Export) -> dict[str, bytes]:
     program = program_of(export)
     text = fill_template(
         "law.cmake.j2",
-        about="\n".join(f"# {harmless(line)}" for line in program.about),
+        about="\n".join(f"# {harmless(line)}" for line in program.description),
         spec=program.names.spec,
         own=program.names.lower,
         test=program_macro(program.names),

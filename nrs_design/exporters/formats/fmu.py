@@ -53,7 +53,7 @@ _BASE = {
     "V": 'kg="1" m="2" s="-3" A="-1"',
     "A": 'A="1"',
 }
-OUTSIDE = (
+FMU_LIMITS = (
     "Inputs arrive as doubles and are rounded to single precision once.",
     "A step from t on takes the inputs that are set at t. What it commands is for the time from t "
     "on: step this model first, hand its command over, then step the motor across the same time. "
@@ -103,10 +103,12 @@ def variables_of(law: StepLaw) -> tuple[Variable, ...]:
     rows = [(v.name, f"in.{v.name}", "input", v.unit, v.meaning) for v in law.inputs]
     rows += [(name, f"out.{name}", "output", law.units[name], computed) for name in law.outputs]
     rows += [(f"state.{v.name}", f"state.{v.name}", "local", v.unit, v.meaning) for v in law.states]
-    return tuple(Variable(name, number, *rest) for number, (name, *rest) in enumerate(rows))
+    return tuple(
+        Variable(name, number, *attributes) for number, (name, *attributes) in enumerate(rows)
+    )
 
 
-def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
+def contents(program: Program, compiler: str | None) -> dict[str, bytes]:
     """Return every entry by its path; without a compiler, for sources alone."""
     names = program.names
     code = {
@@ -118,9 +120,9 @@ def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
     entries["modelDescription.xml"] = description(program).encode()
     entries |= {f"sources/{name}": text.encode() for name, text in code.items()}
     binary = "compiled: nothing, only sources"
-    if compile_with is not None:
+    if compiler is not None:
         library = f"{_LIBRARIES}/{names.lower}.so"
-        entries[library] = shared_library(compile_with, code)
+        entries[library] = shared_library(compiler, code)
         binary = (
             f"compiled for 64-bit Linux on x86: {library}, by the C compiler of who exported it"
         )
@@ -157,10 +159,10 @@ def packed(entries: Mapping[str, bytes]) -> bytes:
 
 def wrapper_text(program: Program) -> str:
     """Return the C around a law; numbers are rounded where the law takes them."""
-    about = (*program.about, "It makes a model by FMI 2.0 of the law.")
+    description = (*program.description, "It makes a model by FMI 2.0 of the law.")
     return fill_template(
         f"{_WRAPPER}.j2",
-        comment=block_comment(about, C_SOURCE),
+        comment=block_comment(description, C_SOURCE),
         names=program.names,
         law=program.law,
         variables=variables_of(program.law),
@@ -195,8 +197,8 @@ def _page(program: Program, binary: str) -> str:
     """Return the documentation as HTML; `binary` describes the compiled part."""
     proof, modes = program.record.proof, program.law.modes
     sections = (
-        ("What this is", (*program.about, binary)),
-        ("Outside the proof, in this format", OUTSIDE),
+        ("What this is", (*program.description, binary)),
+        ("Outside the proof, in this format", FMU_LIMITS),
         ("How to start it", tuple(start_lines(program.law))),
         ("Taken for granted by the proof", () if proof is None else proof.assumptions),
         ("Modes", tuple(f"{k}: {mode}" for k, mode in enumerate(modes))),
@@ -218,16 +220,16 @@ def compiler() -> str | None:
     return shutil.which("cc")
 
 
-def shared_library(compile_with: str, sources: Mapping[str, str]) -> bytes:
+def shared_library(compiler: str, sources: Mapping[str, str]) -> bytes:
     """Compile sources, by their names, with a compiler that takes the flags of GCC."""
     with TemporaryDirectory(prefix="nrs-design-") as folder:
         for name, text in sources.items():
             (Path(folder) / name).write_text(text, encoding="ascii")
         files = [name for name in sources if name.endswith(".c")]
-        done = run_program(compile_with, [*FLAGS, "-o", "library.so", *files], folder)
-        if done.returncode:
+        compilation = run_program(compiler, [*FLAGS, "-o", "library.so", *files], folder)
+        if compilation.returncode:
             raise DesignError(
-                f"{compile_with} does not compile the law: {done.stderr.strip()[:500]}",
+                f"{compiler} does not compile the law: {compilation.stderr.strip()[:500]}",
                 remedy="repair the compiler; without one, sources alone are written",
             )
         return (Path(folder) / "library.so").read_bytes()

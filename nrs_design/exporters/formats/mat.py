@@ -137,11 +137,11 @@ def _modes(modes: Iterable[Mode]) -> Any:
 
 def _gains(record: ExportRecord) -> Any:
     """Return every gain: a single-precision number is a double, too."""
-    each = [("motion", gain) for gain in record.motion.gains]
-    each += [(item.name, gain) for item in record.controllers for gain in item.gains]
+    gains = [("motion", gain) for gain in record.motion.gains]
+    gains += [(item.name, gain) for item in record.controllers for gain in item.gains]
     rows = [
         {"controller": name, "name": gain.name, "unit": gain.unit, "value": gain.float32}
-        for name, gain in each
+        for name, gain in gains
     ]
     return _structs(rows, ("controller", "name", "unit", "value"))
 

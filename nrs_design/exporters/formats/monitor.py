@@ -56,8 +56,8 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
     """Return the header: limits, types and functions."""
     return fill_template(
         "monitor.h.j2",
-        comment=block_comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER),
-        kinds=told_kinds(limits),
+        comment=block_comment((*program.description, *_words(program, limits)), C_MONITOR_HEADER),
+        kinds=list_violations(limits),
         macros=[*_limits(program.names, limits)],
         **_values(program, limits),
     )
@@ -65,18 +65,18 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
 
 def source_text(program: Program, limits: MonitorLimits) -> str:
     """Return the source."""
-    follows = [
-        f"{{{', '.join('true' if may else 'false' for may in row)}}}" for row in limits.follows
+    successor_rows = [
+        f"{{{', '.join('true' if may else 'false' for may in row)}}}" for row in limits.successors
     ]
     tables = [
-        ("uint32_t", "shortest", "", [f"{least}U" for least, _ in limits.stays]),
-        ("uint32_t", "longest", "", [f"{most}U" for _, most in limits.stays]),
-        ("bool", "follows", f"[{program.names.modes}]", follows),
+        ("uint32_t", "shortest", "", [f"{shortest}U" for shortest, _ in limits.dwell_times]),
+        ("uint32_t", "longest", "", [f"{longest}U" for _, longest in limits.dwell_times]),
+        ("bool", "follows", f"[{program.names.modes}]", successor_rows),
     ]
-    about = (*program.about, f"More is in {program.names.spec}_monitor.h.")
+    description = (*program.description, f"More is in {program.names.spec}_monitor.h.")
     return fill_template(
         "monitor.c.j2",
-        comment=block_comment(about, C_MONITOR),
+        comment=block_comment(description, C_MONITOR),
         modes=program.law.modes,
         tables=tables,
         oldest=limits.age[1] if limits.age else 0,
@@ -97,13 +97,13 @@ def _values(program: Program, limits: MonitorLimits) -> dict[str, Any]:
 
 
 def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
-    own = program.names.lower
+    prefix = program.names.lower
     yield ""
     yield (
-        f"Call {own}_monitor_init once, then {own}_monitor_step at every sample, beside "
-        f"{own}_step. It returns the first violation, and from then on the same until init. What "
-        "to do then is for the caller to say. It commands nothing and is no part of the proof: "
-        "silence says nothing of what is not monitored, or happens between samples."
+        f"Call {prefix}_monitor_init once, then {prefix}_monitor_step at every sample, beside "
+        f"{prefix}_step. It returns the first violation, and from then on the same until init. "
+        "What to do then is for the caller to say. It commands nothing and is no part of the "
+        "proof: silence says nothing of what is not monitored, or happens between samples."
     )
     if limits.region is not None:
         yield (
@@ -120,10 +120,10 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
-def told_kinds(limits: MonitorLimits) -> dict[str, str]:
+def list_violations(limits: MonitorLimits) -> dict[str, str]:
     """Return kinds of violations with their meanings, in the order of their numbers."""
     sector = limits.sector
-    told = {
+    conditions = {
         # Within the region, the command may meet its limit.
         "SATURATION": limits.region is None,
         "REGION": limits.region is not None,
@@ -131,7 +131,9 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
         "PULL": sector is not None and not sector.contact_maintained,
         "FAST": sector is not None and sector.speed is not None,
     }
-    return {kind: text for kind, text in KINDS.items() if kind not in told or told[kind]}
+    return {
+        kind: text for kind, text in KINDS.items() if kind not in conditions or conditions[kind]
+    }
 
 
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
@@ -142,9 +144,9 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     if limits.command is not None and limits.region is None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
     if limits.age is not None:
-        least, most = limits.age
-        yield f"{up}_YOUNGEST", least, "samples, from the spec"
-        yield f"{up}_OLDEST", most, ""
+        lowest, highest = limits.age
+        yield f"{up}_YOUNGEST", lowest, "samples, from the spec"
+        yield f"{up}_OLDEST", highest, ""
     if limits.region is not None:
         for name, number, note in _region_macros(limits.region):
             yield f"{up}_{name}", number, note

@@ -21,7 +21,7 @@ from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Bullets, Table
-from nrs_design.reporting.formatting import number, shortened
+from nrs_design.reporting.formatting import list_first, number
 
 T = TypeVar("T")
 
@@ -199,7 +199,7 @@ def _record(fit: RecordFit, rotational: bool) -> Facts:
 
 def _doubts(result: TissueIdentification) -> Iterator[Bullets]:
     doubts = tuple(
-        f"{model.law.name}: {shortened(model.doubts, 4)}."
+        f"{model.law.name}: {list_first(model.doubts, 4)}."
         for model in result.models
         if model.doubts
     )

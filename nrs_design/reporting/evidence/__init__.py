@@ -42,8 +42,8 @@ def evidence_sections(certification: Certification) -> Iterator[Section]:
     system, evidence = certification.system, certification.evidence
     for statement in certification.statements:
         yield from page_of(system, statement).sections()
-    drawn = None if evidence is None else page_of(system, evidence).run
-    run = unbounded_run(system) if drawn is None else drawn()
+    draw_run = None if evidence is None else page_of(system, evidence).run
+    run = unbounded_run(system) if draw_run is None else draw_run()
     if system.saturation is not None:
         run = replace(run, blocks=(Paragraph(_LINEAR), *run.blocks))
     yield run

@@ -16,13 +16,13 @@ from nrs_design.reporting.document import Bullets, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Offer, Page
 from nrs_design.reporting.evidence.runs import EUCLIDEAN, Greedy, freely_switched, trials_per_step
-from nrs_design.reporting.formatting import shortened
+from nrs_design.reporting.formatting import list_first
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
 
 PageOf = Callable[[SwitchedSystem, AbstractEvidence], Page]
 
-_LISTED = 32
+_MAX_ROWS = 32
 _STRUCTURE = (
     "In every mode, the states of a block are driven by their own block and by later ones only. "
     "So the last block moves by itself, and each of the others follows it."
@@ -36,7 +36,7 @@ _UNSTABLE = (
     "The states of one block move by themselves once the later blocks are at rest, so a family "
     "with an unstable block is unstable."
 )
-_WITHOUT = (
+_OBSTRUCTION = (
     "A family in block triangular form has a common quadratic function only if every family of "
     "diagonal blocks has one. Block {number} ({states}) has none."
 )
@@ -63,12 +63,12 @@ def blocks_page(
     index, part = offer.parts[0]
     if evidence.shows is Shows.NO_COMMON_QUADRATIC:
         inner = page_of(blocks[index], part)
-        text = _WITHOUT.format(number=index + 1, states=shortened(blocks[index].states, 6))
+        text = _OBSTRUCTION.format(number=index + 1, states=list_first(blocks[index].states, 6))
         title = f"No common quadratic function: block {index + 1}"
 
         def obstruction() -> tuple[Section, ...]:
-            shown = (block for section in inner.sections() for block in section.blocks)
-            return (Section(title, (Paragraph(text), *shown)),)
+            inner_blocks = (block for section in inner.sections() for block in section.blocks)
+            return (Section(title, (Paragraph(text), *inner_blocks)),)
 
         return replace(inner, name=name, sections=obstruction)
     deciding = page_of(system, part)
@@ -79,21 +79,21 @@ def blocks_page(
 def _structure(blocks: list[SwitchedSystem], offer: Offer, page_of: PageOf) -> Section:
     """Summarize the evidence for the blocks."""
     parts, discrete = dict(offer.parts), blocks[0].time is Time.DISCRETE
-    rounded = rounded_up if discrete else rounded_down
+    round_rate = rounded_up if discrete else rounded_down
     rows = []
-    for index, block in enumerate(blocks[:_LISTED]):
+    for index, block in enumerate(blocks[:_MAX_ROWS]):
         part = parts.get(index)
         proved = None if part is None else part.proved_rate(block)
-        shown = "not needed" if part is None else page_of(block, part).name
-        rate = "" if proved is None else rounded(proved)
-        rows.append((f"{index + 1}", shortened(block.states, 6), shown, rate))
+        name = "not needed" if part is None else page_of(block, part).name
+        rate = "" if proved is None else round_rate(proved)
+        rows.append((f"{index + 1}", list_first(block.states, 6), name, rate))
     claims = tuple(
-        f"Block {index + 1}: {part.claim(blocks[index])}" for index, part in offer.parts[:_LISTED]
+        f"Block {index + 1}: {part.claim(blocks[index])}" for index, part in offer.parts[:_MAX_ROWS]
     )
-    some = f" (the first {_LISTED})" if len(blocks) > _LISTED else ""
+    scope = f" (the first {_MAX_ROWS})" if len(blocks) > _MAX_ROWS else ""
     unit = "rho per step [1]" if discrete else "alpha [1/s]"
     columns = ("Block", "States", "Evidence", f"Proved {unit}")
-    table = Table(f"The {len(blocks)} diagonal blocks{some}", columns, tuple(rows))
+    table = Table(f"The {len(blocks)} diagonal blocks{scope}", columns, tuple(rows))
     blocks_shown = (Paragraph(_STRUCTURE), table, Bullets("Evidence of the blocks", claims))
     return Section("Block triangular structure", blocks_shown)
 

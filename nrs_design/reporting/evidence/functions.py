@@ -39,7 +39,7 @@ from nrs_design.simulation.norms import (
 from nrs_design.simulation.switched import fine_step, mode_rates, sampled_direction, worst_direction
 
 # Larger matrices, and more of them, do not fit on a page.
-_WRITTEN, _TABLES = 8, 2
+_MAX_ORDER, _TABLES = 8, 2
 
 
 def norms_of(forms: Sequence[Form], order: int) -> list[Norm]:
@@ -58,14 +58,14 @@ def largest_norm(forms: Sequence[Form], order: int) -> Norm:
     touching = [norm for norm, form in zip(norms, forms, strict=True) if not form.free]
     free = [norm for norm, form in zip(norms, forms, strict=True) if form.free]
 
-    def in_contact(states: Array) -> Array:
+    def contact_norm(states: Array) -> Array:
         return np.asarray(np.max([norm(states) for norm in touching], axis=0))
 
     def everywhere(states: Array) -> Array:
         flying = np.max([norm(states[..., :-1]) for norm in free], axis=0)
-        return np.asarray(np.where(states[..., -1] > 0, in_contact(states), flying))
+        return np.asarray(np.where(states[..., -1] > 0, contact_norm(states), flying))
 
-    return everywhere if free else in_contact
+    return everywhere if free else contact_norm
 
 
 def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
@@ -79,13 +79,15 @@ def matrix_tables(forms: Sequence[Form], states: tuple[str, ...]) -> list[Table]
     if forms[0].degree > 1:
         return []
     matrices = scaled_matrices(*(form.Q for form in forms))
-    shown = list(zip(forms, matrices, strict=True))[:_TABLES]
-    return [_table(form.name, Q, states[: len(Q)]) for form, Q in shown if len(Q) <= _WRITTEN]
+    named_matrices = list(zip(forms, matrices, strict=True))[:_TABLES]
+    return [
+        _table(form.name, Q, states[: len(Q)]) for form, Q in named_matrices if len(Q) <= _MAX_ORDER
+    ]
 
 
-def _table(of: str, Q: Array, states: tuple[str, ...]) -> Table:
+def _table(name: str, Q: Array, states: tuple[str, ...]) -> Table:
     rows = tuple((name, *(number(v, 5) for v in row)) for name, row in zip(states, Q, strict=True))
-    return Table(f"Q{of and f' of {of}'}, divided by the largest entry", ("", *states), rows)
+    return Table(f"Q{name and f' of {name}'}, divided by the largest entry", ("", *states), rows)
 
 
 # A run in the norm of a polynomial, or of many functions, tries no more modes.
@@ -100,8 +102,10 @@ _MONOMIALS = (
 
 def functions_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
     """Return the matrices, the rate of every mode in them, and a run."""
-    of = _Functions(system, evidence, offer)
-    return Page(of.name, of.meaning, of.limits, of.run, of.sections)
+    functions = _Functions(system, evidence, offer)
+    return Page(
+        functions.name, functions.meaning, functions.limits, functions.run, functions.sections
+    )
 
 
 @dataclass(frozen=True)
@@ -119,27 +123,41 @@ class _Functions:
             text += f" of each {_turn(self.system.clock)}"
         elif len(self._touching) > 1:
             text += " of each mode"
-        elif not self._lost:
+        elif not self._covers_contact_loss:
             text = f"common {text}"
-        return text + " for contact and free motion" * self._lost
+        return text + " for contact and free motion" * self._covers_contact_loss
 
     @property
     def meaning(self) -> tuple[str, ...]:
         """State function, bound, assumptions and decision."""
         system = self.system
-        said = list(words.function(system, lost=self._lost, each=len(self._touching) > 1))
+        sentences = list(
+            words.function(
+                system,
+                covers_contact_loss=self._covers_contact_loss,
+                has_several=len(self._touching) > 1,
+            )
+        )
         if self._ruled:
-            said += (words.ruled_bound(system), *words.needed_rules(system, self.offer.leaving))
+            sentences += (
+                words.ruled_bound(system),
+                *words.needed_rules(system, self.offer.leaving),
+            )
         else:
-            said += (words.free_bound(system), *words.unneeded_constant(system))
-            said += words.unneeded_rules(system)
-        return (*said, words.decision(system, ruled=self._ruled))
+            sentences += (words.free_bound(system), *words.unneeded_constant(system))
+            sentences += words.unneeded_rules(system)
+        return (*sentences, words.decision(system, ruled=self._ruled))
 
     @property
     def limits(self) -> tuple[str, ...]:
         """Name inadmissible signals and inputs that move the equilibrium."""
-        outside = words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
-        return (*outside, *words.function_limits(self.system, lost=self._lost))
+        signal_limits = (
+            words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
+        )
+        return (
+            *signal_limits,
+            *words.function_limits(self.system, covers_contact_loss=self._covers_contact_loss),
+        )
 
     def sections(self) -> tuple[Section, ...]:
         """Show the forms of the certificate."""
@@ -156,16 +174,16 @@ class _Functions:
             greedy = Greedy(system, system, norms, slowest_in_a_round(system, norms), rate)
             return bounded_run(greedy, "in the norm of its step")
         norm, label = largest_norm(forms, system.order), "(largest norm)"
-        tried = trials_per_step(system)
+        trials = trials_per_step(system)
         if len(forms) == 1 and self._form.degree == 1:
             label, (Q,) = "in the norm of Q", scaled_matrices(self._form.Q)
-            played = freely_switched(system, Q, tried)
+            played = freely_switched(system, Q, trials)
             initial = worst_direction(played, Q)
         else:
             label = f"in V^(1/{2 * self._form.degree})" if len(forms) == 1 else label
-            played = freely_switched(system, None, min(tried, _MODES))
+            played = freely_switched(system, None, min(trials, _MODES))
             initial = sampled_direction(played, norm, fine_step(played))
-        if self._lost:
+        if self._covers_contact_loss:
             played = replace(played, contact=system.contact)
             norm = norm if any(form.free for form in forms) else clipped(norm)
             initial = initial if initial[-1] > 0 else -initial
@@ -180,7 +198,7 @@ class _Functions:
         return tuple(form for form in self.offer.forms if not form.free)
 
     @property
-    def _lost(self) -> bool:
+    def _covers_contact_loss(self) -> bool:
         return self.system.contact is not None and self.evidence.covers_lost_contact
 
     @property
@@ -196,10 +214,10 @@ class _Functions:
     def _text(self) -> str:
         """State the content of the certificate and the constant in the Euclidean norm."""
         forms, touching = self.offer.forms, self._touching
-        each = "mode" if self.system.clock is None else _turn(self.system.clock)
+        function_owner = "mode" if self.system.clock is None else _turn(self.system.clock)
         text = "The certificate holds one function for all modes"
         if len(touching) > 1:
-            text = f"The certificate holds {len(touching)} functions, one for each {each}"
+            text = f"The certificate holds {len(touching)} functions, one for each {function_owner}"
         if len(forms) > len(touching):
             text += f" in contact, and {len(forms) - len(touching)} for free motion"
         if self._form.degree > 1:
@@ -208,7 +226,7 @@ class _Functions:
             f": x' Q x. Numbers are written with denominator 2^{self.offer.denominator_log2}; here "
             "matrices are divided by the largest entry of any."
         )
-        if self._lost or self.system.clock is not None or self.offer.leaving:
+        if self._covers_contact_loss or self.system.clock is not None or self.offer.leaving:
             return text
         matrices = scaled_matrices(*(form.Q for form in forms))
         spectra = np.array([np.linalg.eigvalsh(Q)[[0, -1]] for Q in matrices])
@@ -241,12 +259,12 @@ _TEXT = (
 
 def constants_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
     """Return the page of P at every corner of the constant parameters, with free switching."""
-    which = "Which norm |x| is, depends on the values of the constant parameters."
+    norm_note = "Which norm |x| is, depends on the values of the constant parameters."
     text = Paragraph(_TEXT.format(offer.denominator_log2))
     return Page(
         "quadratic function of constant parameters",
         (
-            f"{words.free_bound(system)} {which}",
+            f"{words.free_bound(system)} {norm_note}",
             _CONSTANT,
             *words.unneeded_rules(system),
             words.decision(system),
@@ -263,7 +281,7 @@ def _run_at_corner(system: SwitchedSystem, evidence: AbstractEvidence, offer: Of
     forms = scaled_matrices(*(form.Q for form in offer.forms))
     corners = [modes_at_corner(system, k) for k in range(len(forms))]
     slowest = max if system.time is Time.DISCRETE else min
-    rates = [slowest(mode_rates(at, P)) for at, P in zip(corners, forms, strict=True)]
+    rates = [slowest(mode_rates(corner, P)) for corner, P in zip(corners, forms, strict=True)]
     k = rates.index(slowest(rates))
     fixed, P, proved = corners[k], forms[k], evidence.proved_rate(system)
     assert proved is not None  # it shows stability

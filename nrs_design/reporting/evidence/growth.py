@@ -39,12 +39,12 @@ _MODE = "a mode that is not stable"
 _AVERAGE = "an average that is not stable"
 _PERIOD = "a period that grows"
 _CONTACT = "a motion that grows while contact is lost and made"
-_IN_A_MODE = (
+_MODE_TEXT = (
     "The mode has an eigenvalue outside the open {region}. Staying in this mode forever is one of "
     "the switching signals that the spec allows, so exponential stability under {signals} is "
     "impossible. The decision is exact; the eigenvalue is printed for the reader."
 )
-_ON_AVERAGE = (
+_AVERAGE_TEXT = (
     "If the modes were exponentially stable under arbitrary switching, uniformly over all signals, "
     "then so would be every average of them, which fast switching comes near to. This average is "
     "not stable, so no such guarantee is possible. The decision is exact; the eigenvalue is "
@@ -56,22 +56,22 @@ _PERIODIC = (
     "under {signals}. The matrix of one period is enclosed rigorously; a power of it has a trace "
     "that only an eigenvalue outside the unit circle can explain."
 )
-_BY_ITSELF = (
+_CONTACT_TEXT = (
     "The motion makes its sequence of contact and flight by itself: the environment acts only "
     "where the deflection is positive, and never pulls. Larger each time, it goes on for ever, so "
     "no stability of any kind can be guaranteed under {signals} with contact that may be lost. Its "
     "factor and its direction are enclosed rigorously, and every sign is decided for the enclosure."
 )
-_AT_A_VALUE = (
+_VALUE_TEXT = (
     "The parameter is unknown and constant, so it may have this one value all the time. The "
     "matrices at this value are computed exactly."
 )
-_AT_THIS_VALUE = "Simulated at the value of the parameter that the claim names."
-_FROM_THE_FASTEST = (
+_VALUE_CAPTION = "Simulated at the value of the parameter that the claim names."
+_FASTEST_CAPTION = (
     "Simulated from the direction that grows the most, with every mode for its time and every "
     "reset of its switches."
 )
-_BY_SIGNS = (
+_CONTACT_CAPTION = (
     "Simulated from the enclosed direction, through contact and flight as the signs of the motion "
     "say."
 )
@@ -79,17 +79,17 @@ _STAYING = (
     "Simulated from the eigenvector of the eigenvalue: the state does not decay. No other mode is "
     "used, which the switching allows."
 )
-_CARRIED_ON = "The dashed line is the growth per period, carried on."
-_OTHER_VALUES = (
+_GROWTH_LINE = "The dashed line is the growth per period, carried on."
+_VALUE_SCOPE = (
     "Nothing is said about other values of the parameter: a narrower range may be stable."
 )
-_OTHERS = (
+_SIGNAL_SCOPE = (
     "Nothing is said about slower switching, other signals and other motions: a longer dwell time, "
     "fewer transitions or narrower ranges, or modes that are left soon enough, may make the system "
     "stable."
 )
 _LINEAR = "Nothing is said about what saturation or friction would make of the growth."
-_ON_THE_BORDER = (
+_BORDER_NOTE = (
     "An eigenvalue exactly on the border means that states need not decay; they need not grow "
     "either."
 )
@@ -98,14 +98,14 @@ _ON_THE_BORDER = (
 def growth_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer) -> Page:
     """Return why one motion is enough, and the run that repeats its sequence of modes."""
     if offer.shares:
-        return _at_a_value(system, offer)
-    run, beyond = _repeated, _LINEAR
+        return _describe_constant_value(system, offer)
+    run, caveat = _repeated, _LINEAR
     if offer.weights:
-        name, meaning, run, beyond = _AVERAGE, _ON_AVERAGE, _average, _ON_THE_BORDER
+        name, meaning, run, caveat = _AVERAGE, _AVERAGE_TEXT, _average, _BORDER_NOTE
     elif offer.factor is not None:
-        name, meaning = _CONTACT, _BY_ITSELF
+        name, meaning = _CONTACT, _CONTACT_TEXT
     elif [time for _, time in offer.steps] == [0]:
-        name, meaning, run, beyond = _MODE, _IN_A_MODE, _in_a_mode, _ON_THE_BORDER
+        name, meaning, run, caveat = _MODE, _MODE_TEXT, _run_one_mode, _BORDER_NOTE
     else:
         name, meaning = _PERIOD, _PERIODIC
     region = "unit disk" if system.time is Time.DISCRETE else "left half plane"
@@ -114,12 +114,12 @@ def growth_page(system: SwitchedSystem, evidence: AbstractEvidence, offer: Offer
     return Page(
         name,
         (meaning.format(signals=signals, region=region),),
-        (words.NO_FORECAST, _OTHERS, beyond),
+        (words.NO_FORECAST, _SIGNAL_SCOPE, caveat),
         lambda: Section(_TITLE, tuple(run(system, offer))),
     )
 
 
-def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
+def _describe_constant_value(system: SwitchedSystem, offer: Offer) -> Page:
     """Return the page of instability at one value of the constant parameters."""
     ((_, part),) = offer.parts
     page = growth_page(system_at(system, offer.shares), part, offer_of(part))
@@ -127,13 +127,13 @@ def _at_a_value(system: SwitchedSystem, offer: Offer) -> Page:
     assert run is not None  # it shows instability
     return Page(
         "a value of the parameter that is not stable",
-        (_AT_A_VALUE, *page.meaning),
-        (*page.limits, _OTHER_VALUES),
-        lambda: Section(_TITLE, (Paragraph(_AT_THIS_VALUE), *run().blocks)),
+        (_VALUE_TEXT, *page.meaning),
+        (*page.limits, _VALUE_SCOPE),
+        lambda: Section(_TITLE, (Paragraph(_VALUE_CAPTION), *run().blocks)),
     )
 
 
-def _in_a_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
+def _run_one_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     """Stay in the mode, from the eigenvector of its worst eigenvalue."""
     ((name, _),) = offer.steps
     modes, discrete = (*system.modes, *system.free_motions()), system.time is Time.DISCRETE
@@ -147,7 +147,7 @@ def _in_a_mode(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     rate = math.log(abs(worst)) if discrete else worst.real
     label = f"{abs(worst):.4g}^t" if discrete else f"exp({worst.real:.4g} t)"
     line = (f"the eigenvalue alone, {label}", np.exp(rate * response.time))
-    yield _drawn(f"Staying in mode {name}", _STAYING, response, single, line)
+    yield _illustrate(f"Staying in mode {name}", _STAYING, response, single, line)
 
 
 def _average(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
@@ -159,7 +159,7 @@ def _average(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
 def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
     discrete, start, edges, time = system.time is Time.DISCRETE, None, offer.edges, 1.0
-    caption = _FROM_THE_FASTEST
+    caption = _FASTEST_CAPTION
     if offer.factor is not None:
         system = all_modes(system)
         system = system.with_modes(system.modes, system.states, ARBITRARY)
@@ -168,7 +168,7 @@ def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
         if not discrete:
             time, start = 1 / max(low, 1e-9), math.e
         unit = "each time" if discrete else "1/s"
-        caption = f"{_BY_SIGNS} It grows by {lower(offer.factor)} {unit} at least."
+        caption = f"{_CONTACT_CAPTION} It grows by {lower(offer.factor)} {unit} at least."
     names = [mode.name for mode in system.modes]
     steps = [(names.index(name), time * float(count)) for name, count in offer.steps]
     run = periodic_run(system, steps, edges, start)
@@ -178,11 +178,11 @@ def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     periods = counted(round(response.time[-1] / run.period), "period")
     growth = np.exp(math.log(run.radius) * response.time / run.period)
     line = (f"factor {number(run.radius, 4)} per period", growth)
-    caption = f"{caption} {_CARRIED_ON}"
-    yield _drawn(f"The witness over {periods}", caption, response, system, line)
+    caption = f"{caption} {_GROWTH_LINE}"
+    yield _illustrate(f"The witness over {periods}", caption, response, system, line)
 
 
-def _drawn(
+def _illustrate(
     title: str, caption: str, response: SwitchedRun, system: SwitchedSystem, line: Bound
 ) -> Illustration:
     norms = np.linalg.norm(response.state, axis=1)
@@ -203,7 +203,7 @@ def _factor(run: PeriodicRun, steps: int, *, discrete: bool) -> Paragraph:
     )
 
 
-_LISTED = 24
+_MAX_ROWS = 24
 _MEANING = (
     "That no common quadratic function exists says nothing about stability: a function of another "
     "kind may exist."
@@ -225,10 +225,10 @@ def obstruction_page(system: SwitchedSystem, _: AbstractEvidence, offer: Offer) 
 
     def sections() -> tuple[Section, ...]:
         text = f"{_ARGUMENT.format(*_TERMS[system.time])} {_MEANING}"
-        heaviest = offer.weights[:_LISTED]
+        heaviest = offer.weights[:_MAX_ROWS]
         rows = tuple((name, number(float(share), 4)) for name, share in heaviest)
-        some = f", the {_LISTED} heaviest" if len(offer.weights) > _LISTED else ""
-        title = f"Weight of the modes in the contradiction{some}"
+        scope = f", the {_MAX_ROWS} heaviest" if len(offer.weights) > _MAX_ROWS else ""
+        title = f"Weight of the modes in the contradiction{scope}"
         table = Table(title, ("Mode", "Share of the trace of X [1]"), rows)
         return (Section("No common quadratic function", (Paragraph(text), table)),)
 

@@ -64,7 +64,7 @@ def offer_of(evidence: AbstractEvidence) -> Offer:
     return Offer() if read is None else read(evidence)
 
 
-def _one(e: Any) -> Offer:
+def _quadratic_offer(e: Any) -> Offer:
     return Offer((Form(e.Q),), e.denominator_log2)
 
 
@@ -114,9 +114,9 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "constants-quadratic": _corners,
     "graph": _graph,
     "growing-sequence": _sequence,
-    "invariant-ellipsoid": _one,
+    "invariant-ellipsoid": _quadratic_offer,
     "no-common-quadratic": _traces,
     # The form acts on (1, state) and is indefinite: nothing to draw.
     "offset-ellipsoid": lambda e: Offer(),
-    "saturated-ellipsoid": _one,
+    "saturated-ellipsoid": _quadratic_offer,
 }

@@ -23,7 +23,7 @@ _SATURATED = (
     "its limit there; so the loop moves as a mixture of linear ones, in all of which V decreases. "
     "A higher limit leaves it such a mixture."
 )
-_HELD = (
+_CONTENT = (
     "The certificate holds the matrix Q, one row h for each signal, the rate and the size of the "
     "start. Here Q is scaled."
 )
@@ -33,14 +33,14 @@ def bound_page(system: SwitchedSystem, evidence: AbstractEvidence, _: Offer) -> 
     """Return the level that an output does not exceed."""
     bound = evidence.bound(system)
     assert bound is not None  # it shows one
-    between = ("What happens between two steps.",) if system.time is Time.DISCRETE else ()
+    limits = ("What happens between two steps.",) if system.time is Time.DISCRETE else ()
     return Page(
         "bound on an output under a disturbance",
         (_BOUND, *words.unneeded_rules(system), words.decision(system)),
         (
             "Other disturbances beside those named, and larger ones.",
             "That the bound is reached: the largest possible value may be smaller.",
-            *between,
+            *limits,
         ),
         sections=lambda: (_bound_section(system, bound),),
     )
@@ -61,9 +61,11 @@ def _bound_section(system: SwitchedSystem, bound: Bound) -> Section:
         f"The certificate holds Q and the share a = {number(float(bound.share), 4)} {per}: V grows "
         "by at most a times 1 - V."
     )
-    every = len(bound.channels) == len(system.channels) > 1
+    has_all_channels = len(bound.channels) == len(system.channels) > 1
     names = ", ".join(item.name for item in bound.channels)
-    title = f"Bound on {output.name} under {'all disturbances at once' if every else names}"
+    title = (
+        f"Bound on {output.name} under {'all disturbances at once' if has_all_channels else names}"
+    )
     table = Table("Bound and limit", ("Quantity", "Value"), tuple(rows))
     return Section(title, (Paragraph(text), table))
 
@@ -102,7 +104,7 @@ def _saturation_section(
         rows.append((f"{name} that is wanted", nearly(start.wanted, unit)))
     rows.append(("Rate of decay, proved", f"{lower(rate)} 1/s"))
     blocks: tuple[Block, ...] = (
-        Paragraph(_HELD),
+        Paragraph(_CONTENT),
         Table("Decay although signals saturate", ("Quantity", "Value"), tuple(rows)),
         *matrix_tables(offer.forms, system.states),
     )

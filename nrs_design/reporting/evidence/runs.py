@@ -14,7 +14,7 @@ from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.evidence.words import allowed
+from nrs_design.reporting.evidence.words import rules_clause
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.greedy import greedy_run, relative_norms, slowest
@@ -51,7 +51,9 @@ _GREEDY = (
     "Simulated run: at every step the adversary takes the mode, of those that may be in force, "
     "after which the norm is largest. It is a bad run, not the worst one."
 )
-_HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
+_BOUND_CAPTION = (
+    "The dashed line is the bound of the certificate, which holds for every switching signal"
+)
 _SLOPE = (
     "The dashed line has the proved rate. The certificate says that every run that keeps the rules "
     "stays below such a line, up to one constant factor; so this run may lie above the line for a "
@@ -72,7 +74,7 @@ _UNPROVED = (
 )
 EUCLIDEAN = "|x(t)| / |x(0)|\nEuclidean norm [1]"
 _AGAINST = "Switching against the proved bound"
-_BESIDE = "Switching beside the proved rate"
+_RATE_TITLE = "Switching beside the proved rate"
 BOUND = "proved bound, "
 
 
@@ -104,7 +106,7 @@ class Greedy:
         if len(self.played.modes) < len(self.system.modes):
             caption += f" Only the {len(self.played.modes)} slowest modes take part."
         deflection = "" if self.played.contact is None else system.states[-1]
-        title = {"": _UNBOUNDED, BOUND: _AGAINST}.get(line, _BESIDE)
+        title = {"": _UNBOUNDED, BOUND: _AGAINST}.get(line, _RATE_TITLE)
         figure = draw_run(response, values, bound, system, label, deflection)
         return Section(_SECTION, (Illustration("run", title, caption, figure),))
 
@@ -113,8 +115,8 @@ def bounded_run(greedy: Greedy, norm: str, note: str = "") -> Section:
     """Draw a greedy run below its bound; say in which norm."""
     played = greedy.played
     letter = "x" if played.clock is None and played.contact is None else "w"
-    lost = " and any loss of contact" if played.contact is not None else ""
-    text = f"{note}{_HOLDS}{lost}{allowed(played)}."
+    contact_note = " and any loss of contact" if played.contact is not None else ""
+    text = f"{note}{_BOUND_CAPTION}{contact_note}{rules_clause(played)}."
     return greedy.draw(text, f"|{letter}(t)| / |{letter}(0)|\n{norm} [1]", BOUND)
 
 
@@ -182,8 +184,10 @@ def unbounded_run(system: SwitchedSystem) -> Section:
         return Greedy(system, played, norm, worst_direction(played, identity)).draw(
             _UNPROVED, EUCLIDEAN
         )
-    kept = replace(system, contact=None)
-    return Greedy(kept, kept, [norm] * system.clock.length, initial).draw(_UNPROVED, EUCLIDEAN)
+    linear_system = replace(system, contact=None)
+    return Greedy(linear_system, linear_system, [norm] * system.clock.length, initial).draw(
+        _UNPROVED, EUCLIDEAN
+    )
 
 
 def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:

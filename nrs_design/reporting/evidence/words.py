@@ -8,10 +8,10 @@ from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reporting.formatting import shortened
+from nrs_design.reporting.formatting import list_first
 
 # Modes that a sentence names.
-NAMED = 8
+MAX_NAMES = 8
 
 _DECIDED = (
     "The decision is exact: the modes are rational matrices, the numbers of the certificate are "
@@ -27,12 +27,12 @@ _MISSES = (
     "that of the state to which a period in time, or a missed one, leads. The claim is about every "
     "sample."
 )
-_STAYS = (
+_DWELL_TEXT = (
     "While a controller is in force, its function decreases faster than the claim. So the "
     "functions of a stay grow from sample to sample, up to its dwell time, and leave room for the "
     "rise at a switch. The claim is about every sample."
 )
-_IN_THE_AIR = (
+_FREE_MOTION = (
     "In free motion the deflection is left out of the function. So it measures motion, force and "
     "penetration, and not how far the axis has moved away from the surface: once it has come to "
     "rest in the air, it stays there."
@@ -54,12 +54,12 @@ def free_bound(system: SwitchedSystem) -> str:
     return (
         "The bound means: measured by |x|, the distance from rest shrinks at least by the factor "
         f"{decay_factor(system)}, from the first moment on and whatever switches happen"
-        f"{allowed(system)}. In "
+        f"{rules_clause(system)}. In "
         "another norm the same rate holds with a constant factor in front."
     )
 
 
-def allowed(system: SwitchedSystem) -> str:
+def rules_clause(system: SwitchedSystem) -> str:
     """Say that switches keep the rules that a clock holds, if it holds any."""
     ruled = system.clock is not None and not system.clock.is_round
     return ", as the rules allow" if ruled else ""
@@ -89,7 +89,7 @@ def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[s
         )
     if leaving:
         yield (
-            f"The longest dwell time of {shortened(leaving, NAMED)} is part of the "
+            f"The longest dwell time of {list_first(leaving, MAX_NAMES)} is part of the "
             "claim: the machine itself must leave in time. The function may grow there meanwhile."
         )
     if switching.transitions is not None:
@@ -101,17 +101,17 @@ def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[s
 def unneeded_constant(system: SwitchedSystem) -> Iterator[str]:
     """Say that a proof does not need constant parameters to be constant."""
     if system.switching.fixed_ends:
-        few = len(system.switching.fixed_parameters) < 2
-        what, they = ("the parameter", "it") if few else ("the parameters", "they")
-        yield f"The proof does not need {what} to be constant: {they} may change freely."
+        is_single = len(system.switching.fixed_parameters) < 2
+        subject, pronoun = ("the parameter", "it") if is_single else ("the parameters", "they")
+        yield f"The proof does not need {subject} to be constant: {pronoun} may change freely."
 
 
 def unneeded_rules(system: SwitchedSystem) -> Iterator[str]:
     """Say that a proof holds without the rules that are declared, if any are."""
     switching = system.switching
     # With a constant parameter, the list of transitions only keeps its two ends apart.
-    listed = switching.transitions is not None and not switching.fixed_ends
-    if switching.dwell_time > 0 or switching.stays or listed:
+    has_transitions = switching.transitions is not None and not switching.fixed_ends
+    if switching.dwell_time > 0 or switching.stays or has_transitions:
         yield (
             "The proof does not need the declared rules of switching: it holds for arbitrary "
             "switching."
@@ -126,7 +126,7 @@ def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Itera
     if any(stay.shortest > 0 for _, stay in switching.stays):
         yield "Leaving a mode before its own dwell time is over."
     if leaving:
-        yield f"Staying longer than declared in {shortened(leaving, NAMED)}."
+        yield f"Staying longer than declared in {list_first(leaving, MAX_NAMES)}."
     if switching.transitions is not None:
         yield "Switches that the spec does not list."
 
@@ -142,42 +142,44 @@ def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
     return f"{text}; a second library agreed."
 
 
-def all_corners(system: SwitchedSystem, evidence: AbstractEvidence, how: str) -> str:
+def all_corners(system: SwitchedSystem, evidence: AbstractEvidence, method: str) -> str:
     """Say that values between the corners of declared ranges are covered."""
     text = (
         "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
         "parameter alone, or in its inverse, so all values between the corners are covered as "
-        f"well, {how}."
+        f"well, {method}."
     )
     if system.roundings:
         # A sampled loop has matrix exponentials of the motor constants.
         text = (
             "The modes are the corners of what encloses the declared parameter ranges. The "
             "matrices are affine in each parameter, in exponentials of the motor's together, so "
-            f"all values in between are covered as well, {how}."
+            f"all values in between are covered as well, {method}."
         )
     if system.time is Time.DISCRETE and not evidence.keeps_bound_in_mixtures:
         text += " Between the corners, the bound holds up to a constant factor."
     return text
 
 
-def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]:
+def function(
+    system: SwitchedSystem, *, covers_contact_loss: bool, has_several: bool
+) -> Iterator[str]:
     """Say what the functions measure, where they are not simply a norm of all states.
 
     `lost`: they cover the loss of contact. `each`: one for each mode, or for each step of a round.
     """
     if system.clock is not None:
-        counted = _STAYS if system.clock.counts_stays else _MISSES
-        yield _ROUNDS if system.clock.is_round else counted
-    elif lost and each:
+        clock_text = _DWELL_TEXT if system.clock.counts_stays else _MISSES
+        yield _ROUNDS if system.clock.is_round else clock_text
+    elif covers_contact_loss and has_several:
         yield "Each mode has a function; the largest of them decreases in every step."
-    if lost:
-        yield _IN_THE_AIR
+    if covers_contact_loss:
+        yield _FREE_MOTION
 
 
-def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
+def function_limits(system: SwitchedSystem, *, covers_contact_loss: bool) -> Iterator[str]:
     """State limits of a proof with functions; `lost`: they cover the loss of contact."""
-    if lost or system.clock is not None:
+    if covers_contact_loss or system.clock is not None:
         yield _MOVED_REST
     if system.clock is not None and system.clock.counts_stays:
         yield "Switches that come before a dwell time has passed."

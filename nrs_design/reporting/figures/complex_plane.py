@@ -17,11 +17,11 @@ from nrs_design.reporting.style import (
     ALARM,
     BLUE,
     INK,
+    MAX_SERIES,
     MUTED,
-    TOLD_APART,
     VERMILLION,
     color,
-    in_full,
+    format_tick,
     legend,
     marker,
     new_axes,
@@ -37,22 +37,24 @@ Complexes = Sequence[complex]
 
 
 @styled
-def draw_root_locus(open_loop: TransferFunction, wanted: Complexes, reached: Complexes) -> Figure:
+def draw_root_locus(
+    open_loop: TransferFunction, target_poles: Complexes, closed_loop_poles: Complexes
+) -> Figure:
     """Draw the closed-loop poles in rad/s over the gain."""
     from nrs_design.control_library import control
 
     figure, axes = new_axes(4.0)
     start = poles(open_loop)
     zeros = np.roots(open_loop.numerator)
-    points = np.concatenate([start, zeros, np.asarray(wanted), np.asarray(reached)])
+    points = np.concatenate([start, zeros, np.asarray(target_poles), np.asarray(closed_loop_poles)])
     for branch in control.root_locus_map(to_control(open_loop)).loci.T:
         axes.plot(branch.real, branch.imag, color=BLUE, zorder=2)
     axes.plot(start.real, start.imag, "x", color=INK, markersize=8, label="open-loop poles")
     if len(zeros):
         axes.plot(zeros.real, zeros.imag, "o", color=INK, mfc="none", label="open-loop zeros")
-    if wanted:
-        _mark(axes, wanted, "s", VERMILLION, "wanted poles", size=11, filled=False)
-    _mark(axes, reached, "D", VERMILLION, "poles reached", size=5.5, filled=True)
+    if target_poles:
+        _mark(axes, target_poles, "s", VERMILLION, "wanted poles", size=11, filled=False)
+    _mark(axes, closed_loop_poles, "D", VERMILLION, "poles reached", size=5.5, filled=True)
     show_half_plane(axes, points, "rad/s", room=0.35)
     legend(figure, axes, 2)
     return figure
@@ -71,34 +73,34 @@ def draw_eigenvalues(
     drawn alike.
     """
     figure, axes = new_axes(4.2)
-    together = np.concatenate(list(values))
+    eigenvalues = np.concatenate(list(values))
     _border(axes, time, rate)
     for index, (name, row) in enumerate(zip(names, values, strict=True)):
         label, look = _look(index, name, len(names))
         axes.plot(row.real, row.imag, mfc="none", label=label, linestyle="none", **look)
-    unstable = together[_outside(together, time)]
+    unstable = eigenvalues[_find_unstable(eigenvalues, time)]
     if len(unstable):
         _mark(axes, unstable.tolist(), "o", ALARM, "not in the stable region", 17, filled=False)
     if time is Time.CONTINUOUS:
-        show_half_plane(axes, together, "1/s")
+        show_half_plane(axes, eigenvalues, "1/s")
         right = axes.get_xlim()[1]
         axes.axvspan(0.0, right, color=VERMILLION, alpha=0.17, zorder=0, linewidth=0)
     else:
-        show_disk(axes, together, "1")
+        show_disk(axes, eigenvalues, "1")
     legend(figure, axes, 2)
     return figure
 
 
 def _look(index: int, name: str, count: int) -> tuple[str | None, dict[str, Any]]:
     """Return label and look of a mode; markers of several sizes show where modes coincide."""
-    if count > TOLD_APART:
+    if count > MAX_SERIES:
         label = f"eigenvalues of {count} modes, drawn alike" if index == 0 else None
         return label, {"color": BLUE, "marker": "o"}
     size = 5.0 + 1.8 * (index % 3)
     return name, {"color": color(index), "marker": marker(index), "markersize": size}
 
 
-def _outside(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
+def _find_unstable(values: NDArray[np.complex128], time: Time) -> NDArray[np.bool_]:
     if time is Time.CONTINUOUS:
         return np.asarray(values.real >= -1e-9 * np.abs(values).max())
     return np.asarray(np.abs(values) >= 1 - 1e-9)
@@ -163,9 +165,9 @@ def show_disk(axes: Axes, points: NDArray[np.complex128], unit: str) -> None:
 def _near_end(values: NDArray[np.float64], tiny: float) -> float:
     """Return up to where an axis is linear: without end where no value lies far beyond others."""
     sizes = np.sort(np.abs(values)[np.abs(values) > tiny])
-    for here, beyond in pairwise(sizes.tolist()):
-        if here >= np.median(sizes) and beyond > _FAR * here:
-            return float(f"{1.05 * here:.1e}")
+    for size, next_size in pairwise(sizes.tolist()):
+        if size >= np.median(sizes) and next_size > _FAR * size:
+            return float(f"{1.05 * size:.1e}")
     return math.inf
 
 
@@ -187,10 +189,10 @@ def _set_axis(
         share = _LINEAR_SHARE * math.log10(far / end)
         getattr(axes, f"set_{name}scale")("symlog", linthresh=end, linscale=share)
         ticks = [x for x in _ticks(end, far) if low <= x <= high]
-        texts = [in_full(tick, abs(tick) or 1.0) for tick in ticks]
+        texts = [format_tick(tick, abs(tick) or 1.0) for tick in ticks]
         getattr(axes, f"set_{name}ticks")(ticks, texts)
         getattr(axes, f"set_{name}ticks")([], minor=True)
-        label += f", logarithmic beyond ±{in_full(end, end)}"
+        label += f", logarithmic beyond ±{format_tick(end, end)}"
     getattr(axes, f"set_{name}lim")(low, high)
     getattr(axes, f"set_{name}label")(f"{label} [{unit}]")
     if name == "y":

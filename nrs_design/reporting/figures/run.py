@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.switched import SwitchedRun
 
 # More modes than these share a row, and a color; so many at most have one each by all means.
-_ROWS, _ALONE = 24, 6
+_ROWS, _SINGLE_ROWS = 24, 6
 
 
 @styled
@@ -52,22 +52,24 @@ def draw_run(
     rows = height * len(groups)
     heights = [2.6, *([1.4] if deflection else []), rows]
     figure = new_figure(1.0 + sum(heights))
-    above, *between, below = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    norm_axes, *signal_axes, mode_axes = figure.subplots(
+        len(heights), 1, sharex=True, height_ratios=heights
+    )
     discrete = system.time is Time.DISCRETE
     shape = {"marker": "o", "markersize": 2.5} if discrete and len(norm) <= 80 else {}
-    above.semilogy(
+    norm_axes.semilogy(
         response.time, np.maximum(norm, np.finfo(float).tiny), color=BLUE, label="run", **shape
     )
     if bound is not None:
-        above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
-    above.set_ylabel(label)
-    for axes in between:
+        norm_axes.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
+    norm_axes.set_ylabel(label)
+    for axes in signal_axes:
         _draw_deflection(axes, response, deflection)
     if discrete:
-        below.locator_params(axis="x", integer=True)
-    draw_modes(below, response, groups, labels)
-    below.set_xlabel("Time [steps]" if discrete else "Time [s]")
-    legend(figure, above)
+        mode_axes.locator_params(axis="x", integer=True)
+    draw_modes(mode_axes, response, groups, labels)
+    mode_axes.set_xlabel("Time [steps]" if discrete else "Time [s]")
+    legend(figure, norm_axes)
     return figure
 
 
@@ -99,21 +101,21 @@ def groups_of(response: SwitchedRun, names: Sequence[str]) -> list[Group]:
     Of many, those with one controller and contact are one: a reader asks for these, not for
     corners of ranges.
     """
-    used = list(dict.fromkeys(response.mode.tolist()))
-    if len(used) > _ALONE:
+    modes = list(dict.fromkeys(response.mode.tolist()))
+    if len(modes) > _SINGLE_ROWS:
         alike: dict[str, list[int]] = {}
-        for mode in used:
+        for mode in modes:
             alike.setdefault("/".join(names[mode].split("/")[:2]), []).append(mode)
-        if len(alike) <= _ALONE:
+        if len(alike) <= _SINGLE_ROWS:
             return [
                 Group(name if len(modes) == 1 else f"{name}: {len(modes)}", tuple(modes), color(i))
                 for i, (name, modes) in enumerate(alike.items())
             ]
-    single = used if len(used) <= _ROWS else used[: _ROWS - 1]
+    single = modes if len(modes) <= _ROWS else modes[: _ROWS - 1]
     groups = [Group(names[m], (m,), color(i)) for i, m in enumerate(single)]
-    if len(used) > len(single):
-        rest = tuple(used[len(single) :])
-        groups.append(Group(f"{len(rest)} other modes", rest, MUTED))
+    if len(modes) > len(single):
+        remaining_modes = tuple(modes[len(single) :])
+        groups.append(Group(f"{len(remaining_modes)} other modes", remaining_modes, MUTED))
     return groups
 
 

@@ -71,20 +71,20 @@ def draw_simulated(
     torque, deg = response["torque"], current().fine
     scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     signs = (1, -1) if bool((torque < -0.01 * torque_limit).any()) else (1,)
-    title, about = "", "certified bound"
+    title, bound_label = "", "certified bound"
     bounds: tuple[float, ...] = ()
     if bound is not None:
-        level, covers = bound
-        about = about if covers else "bound, not about this run"
+        level, covers_run = bound
+        bound_label = bound_label if covers_run else "bound, not about this run"
         if level > _FAR * max(torque_limit, float(np.abs(torque).max())):
-            title = f"{about} {upper(Fraction(level), 4)} {unit('N m')}, beyond this scale"
+            title = f"{bound_label} {upper(Fraction(level), 4)} {unit('N m')}, beyond this scale"
         else:
             bounds = tuple(sign * level for sign in signs)
     fastest = deg * velocity_limit
     speeds = {"of the axis": deg * response["velocity"], "commanded": deg * response["hand"]}
     limits = tuple(sign * torque_limit for sign in signs)
     panels = (
-        Panel(labelled("Torque [N m]"), {"torque": torque}, limits, bounds, about),
+        Panel(labelled("Torque [N m]"), {"torque": torque}, limits, bounds, bound_label),
         Panel(f"Deflection [{length}]", {"deflection": scale * response["depth"]}),
         Panel(labelled("Velocity [deg/s]"), speeds, (fastest, -fastest)),
     )
@@ -106,22 +106,22 @@ def iterate_stays(
 def draw_panels(
     t: NDArray[np.float64],
     panels: Sequence[Panel],
-    stays: Sequence[tuple[float, float, str]] = (),
+    intervals: Sequence[tuple[float, float, str]] = (),
     title: str = "",
 ) -> Figure:
     """Draw panels above each other, and shade who is in control when."""
     figure = new_figure(1.1 + 1.45 * len(panels))
     column = figure.subplots(len(panels), sharex="col", squeeze=False)[:, 0]
-    names = list(dict.fromkeys(name for _, _, name in stays))
+    names = list(dict.fromkeys(name for _, _, name in intervals))
     handles: dict[str, Artist] = {}
     span = float(t[0]), float(t[-1])
     for axes, panel in zip(column, panels, strict=True):
         _draw_panel(axes, t, panel, handles)
-        _shade(axes, span, stays, names, named=axes is column[0])
+        _shade(axes, span, intervals, names, has_names=axes is column[0])
         axes.set_ylabel(panel.label)
     column[-1].set(xlabel="Time [s]", xlim=span)
     if title:
-        column[0].set_title(title, fontsize=9.5, pad=18 if stays else 6)
+        column[0].set_title(title, fontsize=9.5, pad=18 if intervals else 6)
     figure.align_ylabels(column)
     _legend(figure, handles, names)
     return figure
@@ -144,19 +144,19 @@ def _draw_panel(
 def _shade(
     axes: Axes,
     span: tuple[float, float],
-    stays: Sequence[tuple[float, float, str]],
+    intervals: Sequence[tuple[float, float, str]],
     names: Sequence[str],
     *,
-    named: bool,
+    has_names: bool,
 ) -> None:
-    for low, high, name in stays:
+    for low, high, name in intervals:
         if low >= high:
             continue
         tint = _SHADES[names.index(name) % len(_SHADES)]
         axes.axvspan(low, high, color=tint, alpha=_PALE, linewidth=0, zorder=0)
-        if named and _LETTERS * (high - low) > (len(name) + 1) * (span[1] - span[0]):
-            above = axes.get_xaxis_transform()
-            place: dict[str, Any] = {"transform": above, "ha": "center", "va": "bottom"}
+        if has_names and _LETTERS * (high - low) > (len(name) + 1) * (span[1] - span[0]):
+            transform = axes.get_xaxis_transform()
+            place: dict[str, Any] = {"transform": transform, "ha": "center", "va": "bottom"}
             axes.text((low + high) / 2, 1.02, name, color=MUTED, fontsize=8.5, **place)
 
 

@@ -12,7 +12,7 @@ from nrs_design.models.axis import unit
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
-from nrs_design.reporting.sections.impedance import CURVES, by_controller, impedance_section
+from nrs_design.reporting.sections.impedance import CURVES, controller_tables, impedance_section
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.reporting.sections.torque import torque_blocks
@@ -82,10 +82,10 @@ def _gain_table(designed: Designed) -> Table:
     for name, law in design.laws.items():
         for gain, value in law.gains.items():
             unit = design.units[name][gain].replace("*", "·").replace("^2", "²")
-            at = ("controllers", name, gain) if name in designed.spec.controllers else _MOTION
+            key_path = ("controllers", name, gain) if name in designed.spec.controllers else _MOTION
             texts = (number(float(value), 6), exact_decimal(value))
-            shown, exact = (linked(designed.loaded, text, *at) for text in texts)
-            rows.append((name, gain, shown, unit, exact))
+            rounded_value, exact = (linked(designed.loaded, text, *key_path) for text in texts)
+            rows.append((name, gain, rounded_value, unit, exact))
         if not law.gains:
             rows.append((name, "no gain: the motion loop alone", "", "", ""))
     columns = ("Controller", "Gain", "Value", "Unit", "Exact value that ships (float32)")
@@ -93,8 +93,8 @@ def _gain_table(designed: Designed) -> Table:
 
 
 def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
-    wanted, blocks = analysis.wanted, motion_blocks(designed, analysis)
-    loci = () if wanted is None else (_motion_locus(designed, analysis, wanted),)
+    target, blocks = analysis.wanted, motion_blocks(designed, analysis)
+    loci = () if target is None else (_motion_locus(designed, analysis, target),)
     return Section(MOTION, (*blocks, *loci))
 
 
@@ -107,9 +107,9 @@ def motion_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, 
         f"({polynomial_text(G.denominator, 6)}), from {_sides(spec)} velocity. "
         f"{_source(spec, analysis)}"
     )
-    if (wanted := analysis.wanted) is None:
+    if (target := analysis.wanted) is None:
         return (Paragraph(text),)
-    return Paragraph(text), _motion_table(designed, analysis, wanted)
+    return Paragraph(text), _motion_table(designed, analysis, target)
 
 
 def _sides(spec: InteractionDesignSpec) -> str:
@@ -118,8 +118,10 @@ def _sides(spec: InteractionDesignSpec) -> str:
 
 def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     if spec.followed is not None:
-        taken = "velocities" if spec.velocity_interface else "positions"
-        return f"The robot closes this loop itself, and takes {taken}: there are no motion gains."
+        commands = "velocities" if spec.velocity_interface else "positions"
+        return (
+            f"The robot closes this loop itself, and takes {commands}: there are no motion gains."
+        )
     if spec.torque_interface is not None:
         return "Each controller closes its own loop around it, with its stiffness and damping."
     if analysis.motion_source == "given":
@@ -136,11 +138,11 @@ def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     return "It follows from the PD controller that was designed by root locus."
 
 
-def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Table:
-    reached, motion, command = analysis.reached, designed.design.motion, designed.design.command
-    damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
+def _motion_table(designed: Designed, analysis: DesignAnalysis, target: PdDesign) -> Table:
+    achieved, motion, command = analysis.reached, designed.design.motion, designed.design.command
+    damping = -target.wanted_poles[0].real / target.natural_frequency
     per, six = unit("rad"), partial(number, digits=6)
-    Kd, zero, omega = wanted.derivative_gain, wanted.zero, wanted.natural_frequency
+    Kd, zero, omega = target.derivative_gain, target.zero, target.natural_frequency
     # The key of the spec that says most of a row, its label, and what is wanted and reached.
     rows = (
         ("derivative_gain", f"Kd [{command}·s/{per}]", six(Kd), six(float(motion.Kd))),
@@ -149,13 +151,13 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
         (
             "settling_time",
             "Poles [rad/s]",
-            root(wanted.wanted_poles[0], 5),
-            roots(reached.poles, 5),
+            root(target.wanted_poles[0], 5),
+            roots(achieved.poles, 5),
         ),
-        ("damping_ratio", "Damping ratio [1]", number(damping), number(reached.damping_ratio)),
-        ("settling_time", _NATURAL, number(omega), number(reached.natural_frequency)),
-        ("damping_ratio", "Overshoot [%]", "–", number(100 * reached.overshoot, 3)),
-        ("settling_time", "Bandwidth [rad/s]", "–", number(reached.bandwidth)),
+        ("damping_ratio", "Damping ratio [1]", number(damping), number(achieved.damping_ratio)),
+        ("settling_time", _NATURAL, number(omega), number(achieved.natural_frequency)),
+        ("damping_ratio", "Overshoot [%]", "–", number(100 * achieved.overshoot, 3)),
+        ("settling_time", "Bandwidth [rad/s]", "–", number(achieved.bandwidth)),
     )
     cells = tuple(
         (label, *(linked(designed.loaded, text, "motion_loop", key) for text in texts))
@@ -165,7 +167,7 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
     return Table("Motion loop: wanted and reached", columns, cells)
 
 
-def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Illustration:
+def _motion_locus(designed: Designed, analysis: DesignAnalysis, target: PdDesign) -> Illustration:
     design, actuator = designed.design, designed.plant.actuator
     gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
     lag = float(actuator.time_constant)
@@ -178,7 +180,7 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
     )
     if analysis.motion_source == "given":
         caption += " The G that the spec states has its own poles, given in the table."
-    figure = draw_root_locus(open_loop, wanted.wanted_poles, poles(closed).tolist())
+    figure = draw_root_locus(open_loop, target.wanted_poles, poles(closed).tolist())
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 
@@ -190,18 +192,18 @@ def force_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, .
         _OFFSET: any(item.peak is not None for item in items),
         _NO_OFFSET: any(item.approach.offset == "none" for item in items),
     }
-    said = (Paragraph(text) for text, applies in texts.items() if applies)
-    return (*said, *by_controller(designed.loaded, title, _FORCE_ROWS, items))
+    paragraphs = (Paragraph(text) for text, applies in texts.items() if applies)
+    return (*paragraphs, *controller_tables(designed.loaded, title, _FORCE_ROWS, items))
 
 
 def _force_locus(item: ForceAnalysis) -> Illustration:
     scaled = tuple(item.stiffness * c for c in item.forward.numerator)
     open_loop = TransferFunction(scaled, item.forward.denominator)
-    kept = ", with Ki/Kp kept" if item.approach.integral else ""
+    ratio_note = ", with Ki/Kp kept" if item.approach.integral else ""
     caption = (
-        f"Poles of the force loop of {item.name} while Kp grows from 0{kept}, at nominal stiffness "
-        f"{number(item.stiffness, 6)} {unit('N·m/rad')}. Diamonds: Kp = {number(item.loop.gain)} "
-        f"{unit('rad/(N·m)')}."
+        f"Poles of the force loop of {item.name} while Kp grows from 0{ratio_note}, at nominal "
+        f"stiffness {number(item.stiffness, 6)} {unit('N·m/rad')}. Diamonds: "
+        f"Kp = {number(item.loop.gain)} {unit('rad/(N·m)')}."
     )
     figure = draw_root_locus(open_loop, (), item.loop.poles)
     title = f"Root locus of the force loop: {item.name}"

@@ -9,7 +9,7 @@ from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING, GoalStanding
 from nrs_design.reporting.document import Block, Bullets, Linked, Paragraph, Section, State, Table
-from nrs_design.reporting.sections.places import contact_at, linked
+from nrs_design.reporting.sections.places import linked, locate_contact
 from nrs_design.reporting.sections.titles import GOALS
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import OF_THE_CERTIFICATE
@@ -51,23 +51,23 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     unjudged = sum(found.standing is GoalStanding.NOT_JUDGED for found in goals)
     open_ = [goal.key for goal in proofs if not goal.met]
     uncomputed = analysis is None and _are_measured(result.loaded.spec)
-    said = []
+    summary = []
     if uncomputed:
-        said.append("not computed: a nominal loop is unstable")
+        summary.append("not computed: a nominal loop is unstable")
     elif missed:
-        said.append(f"{missed} of {len(goals)} missed (floating point)")
+        summary.append(f"{missed} of {len(goals)} missed (floating point)")
     elif goals and not unjudged:
-        said.append(f"all {len(goals)} met")
+        summary.append(f"all {len(goals)} met")
     if unjudged and not uncomputed:
-        said.append(f"{unjudged} of {len(goals)} not judged between the corners of ranges")
-    shown = [goal.key for goal in proofs if goal.met]
-    for how, keys in (("NOT proved", open_), ("proved", shown)):
+        summary.append(f"{unjudged} of {len(goals)} not judged between the corners of ranges")
+    proved_keys = [goal.key for goal in proofs if goal.met]
+    for verdict, keys in (("NOT proved", open_), ("proved", proved_keys)):
         if keys:
-            said.append(f"{how}: {', '.join(dict.fromkeys(keys))}")
-    if not said:
+            summary.append(f"{verdict}: {', '.join(dict.fromkeys(keys))}")
+    if not summary:
         return State.UNKNOWN, "no goals set"
     state = State.DOUBTFUL if open_ or uncomputed or unjudged else State.GOOD
-    return State.BAD if missed else state, "; ".join(filter(None, said))
+    return State.BAD if missed else state, "; ".join(filter(None, summary))
 
 
 def _are_measured(spec: Spec) -> bool:
@@ -104,8 +104,8 @@ def _place(loaded: LoadedSpec, controller: str, goal: str) -> tuple[str, ...]:
     """Return the keys of the controller's own goal, or of the one for all."""
     spec = loaded.spec
     assert isinstance(spec, InteractionDesignSpec), "it has controllers"
-    own = spec.controllers[controller].goals
-    is_own = own is not None and getattr(own, goal, None) is not None
+    own_goals = spec.controllers[controller].goals
+    is_own = own_goals is not None and getattr(own_goals, goal, None) is not None
     return ("controllers", controller, "goals", goal) if is_own else ("goals", goal)
 
 
@@ -125,19 +125,19 @@ def _certified(result: Result) -> Iterator[Block]:
         yield Table("Goals that the certificate must show", _CERTIFIED, rows)
 
 
-def _row(loaded: LoadedSpec, name: str, found: Achieved) -> tuple[str, ...]:
-    measure = found.measure
+def _row(loaded: LoadedSpec, name: str, achievement: Achieved) -> tuple[str, ...]:
+    measure = achievement.measure
     goal, result = "–", "no goal"
-    where = found.where.replace("*", "·").replace("^2", "²")
-    if found.goal is not None:
+    location = achievement.where.replace("*", "·").replace("^2", "²")
+    if achievement.goal is not None:
         place = loaded.place(*_place(loaded, name, measure.goal))
-        goal = Linked(measure.goal_text(found.goal), place.line)
-        result = found.standing.text
+        goal = Linked(measure.goal_text(achievement.goal), place.line)
+        result = achievement.standing.text
     return (
         name,
         measure.title,
         goal,
-        linked(loaded, found.text, "controllers", name),
-        linked(loaded, where, *contact_at(loaded, found.where)),
+        linked(loaded, achievement.text, "controllers", name),
+        linked(loaded, location, *locate_contact(loaded, achievement.where)),
         result,
     )

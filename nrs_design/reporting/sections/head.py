@@ -21,7 +21,7 @@ from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.reporting.document import Light, Linked, State
-from nrs_design.reporting.formatting import shortened
+from nrs_design.reporting.formatting import list_first
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.sections.tail import register_of
@@ -54,8 +54,8 @@ REFUTED_ASIDE = (
 def claim_of(certification: Certification) -> str:
     """Return what the certificate claims about stability, or that there is nothing to claim."""
     if certification.evidence is None:
-        where = certification.refuted_in
-        return NO_CLAIM if where is None else f"{REFUTED_ASIDE.format(where)} {NO_CLAIM}"
+        contact = certification.refuted_in
+        return NO_CLAIM if contact is None else f"{REFUTED_ASIDE.format(contact)} {NO_CLAIM}"
     return certification.evidence.claim(certification.system)
 
 
@@ -63,16 +63,16 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     """Return switching, hashes, versions and rates for the head of the report."""
     certification = result.certification
     system = certification.system
-    most = "" if system.is_uniform else "at most "
-    count = f"{counted(len(system.modes), 'mode')} of {most}{counted(system.order, 'state')}"
-    where = certification.refuted_in
+    qualifier = "" if system.is_uniform else "at most "
+    count = f"{counted(len(system.modes), 'mode')} of {qualifier}{counted(system.order, 'state')}"
+    contact = certification.refuted_in
     return (
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
         ("Switching", linked(result.loaded, _switching(result), "switching")),
         ("Switches among", Linked(f"{count}, in {system.time} time", section=MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
         # What is refuted although the verdict is inconclusive.
-        *(() if where is None else (("Refuted", Linked(where, section=MEANT)),)),
+        *(() if contact is None else (("Refuted", Linked(contact, section=MEANT)),)),
         (
             "Settled by",
             Linked(certification.method if certification.evidence else "nothing", section=RUNGS),
@@ -135,25 +135,28 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
     spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return
-    for at, item in spec.identified.items():
-        name = at[-1]
+    for key_path, item in spec.identified.items():
+        name = key_path[-1]
         if item.provenance:
             kinds = " and ".join(sorted({source.data.upper() for source in item.provenance}))
             count = counted(len(item.provenance), "record")
-            files = shortened([source.file for source in item.provenance], 3)
+            files = list_first([source.file for source in item.provenance], 3)
             text = f"{kinds} data, {count}: {files}"
-            yield (f"Data for {name}", linked(loaded, text, *at, "provenance"))
+            yield (f"Data for {name}", linked(loaded, text, *key_path, "provenance"))
         if item.doubts:
             accepted = f"accepted: {item.accept_doubt}" if item.accept_doubt else "NOT accepted"
-            text = f"{shortened(list(item.doubts), 3)} ({accepted})"
-            yield (f"Doubts about {name}", linked(loaded, text, *at, "doubts"))
+            text = f"{list_first(list(item.doubts), 3)} ({accepted})"
+            yield (f"Doubts about {name}", linked(loaded, text, *key_path, "doubts"))
     if spec.actuator is not None and spec.actuator.range_covers is not None:
         text = MOTOR_COVERS[spec.actuator.range_covers]
         yield ("Range of actuator holds", linked(loaded, text, "actuator", "range_covers"))
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
-            at = ("environments", name, "range_covers")
-            yield (f"Range of {name} holds", linked(loaded, COVERS[environment.range_covers], *at))
+            key_path = ("environments", name, "range_covers")
+            yield (
+                f"Range of {name} holds",
+                linked(loaded, COVERS[environment.range_covers], *key_path),
+            )
 
 
 _PROOF = {
@@ -168,41 +171,41 @@ def summary_of(result: Result) -> tuple[str, str]:
     system, evidence = result.certification.system, result.certification.evidence
     register = register_of(result.certification.granted, result.loaded.spec)
     names = "; ".join(dict.fromkeys(item.kind.name for item in register))
-    granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
+    assumption_note = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
     if evidence is None:
-        said = "Neither proved nor refuted: this report makes no statement about stability."
-        if (where := result.certification.refuted_in) is not None:
-            said = (
-                f"Refuted {where}, where the environment would have to pull; with contact that may "
-                "be lost, neither proved nor refuted."
+        statement = "Neither proved nor refuted: this report makes no statement about stability."
+        if (contact := result.certification.refuted_in) is not None:
+            statement = (
+                f"Refuted {contact}, where the environment would have to pull; with contact "
+                "that may be lost, neither proved nor refuted."
             )
-        return said, f"What was searched for would have taken for granted: {names}."
+        return statement, f"What was searched for would have taken for granted: {names}."
     if evidence.shows is Shows.STABILITY:
-        return _proved(result), granted
+        return _proved(result), assumption_note
     (witness,) = (b for s, b in result.briefs if s is evidence)
     exact = ", for exact arithmetic" if system.roundings else ""
-    return f"Refuted: {witness}{exact}: no guarantee of stability is possible.", granted
+    return f"Refuted: {witness}{exact}: no guarantee of stability is possible.", assumption_note
 
 
 def _proved(result: Result) -> str:
     """Say what the terminal says of what is proved, and beside it what is not."""
-    certification, ranged = result.certification, result.loaded.spec.has_ranges
+    certification, has_ranges = result.certification, result.loaded.spec.has_ranges
     system, evidence = certification.system, certification.evidence
-    said = {s.shows: brief for s, brief in reversed(result.briefs)}
-    kept = any(catalogue_kind(item).id == CONTACT_KEPT for item in system.assumptions)
-    once = evidence is None or evidence.bounds_at_once
+    briefs = {s.shows: brief for s, brief in reversed(result.briefs)}
+    assumes_contact = any(catalogue_kind(item).id == CONTACT_KEPT for item in system.assumptions)
+    bounds_immediately = evidence is None or evidence.bounds_at_once
     exact = evidence is None or not evidence.covers_rounding
     notes = (
-        (", as long as contact is kept", kept and system.contact is None),
-        (", up to one constant factor", not once),
+        (", as long as contact is kept", assumes_contact and system.contact is None),
+        (", up to one constant factor", not bounds_immediately),
         (", for a law computed without rounding", bool(system.roundings) and exact),
-        (", for all values in the declared ranges", ranged),
+        (", for all values in the declared ranges", has_ranges),
     )
-    saturated, bounded = system.saturation is not None, Shows.BOUND in said
+    saturated, bounded = system.saturation is not None, Shows.BOUND in briefs
     begin = "while no signal saturates, " if saturated else ""
-    first = said[Shows.STABILITY] + "".join(text for text, applies in notes if applies)
+    first = briefs[Shows.STABILITY] + "".join(text for text, applies in notes if applies)
     others = [brief for s, brief in result.briefs if s.shows in (Shows.BOUND, Shows.REGION)]
-    if saturated and Shows.REGION not in said:
+    if saturated and Shows.REGION not in briefs:
         others.append("where signals saturate, nothing is proved")
     if system.channels and not bounded:
         others.append("no bound under the disturbances of the spec is proved")
@@ -212,8 +215,8 @@ def _proved(result: Result) -> str:
 def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, ...]:
     """Return the lights for proof, goals, design, doubts of the data and open assumptions."""
     state, text = _PROOF[Verdict(result.certification.verdict)]
-    if (where := result.certification.refuted_in) is not None:
-        text = f"{text}; refuted {where}"
+    if (contact := result.certification.refuted_in) is not None:
+        text = f"{text}; refuted {contact}"
     proof = Light("Proof", state, text, MEANT)
     spec = result.loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
@@ -269,14 +272,14 @@ def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
     """Yield what is furthest beyond a limit, and how much else is doubtful."""
     doubts = () if analysis is None else analysis.warnings
     if doubts and doubts[0].beyond:
-        more = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
-        yield "Worst of it", Linked(f"{doubts[0]}{more}", section=GOALS)
+        count_note = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""
+        yield "Worst of it", Linked(f"{doubts[0]}{count_note}", section=GOALS)
 
 
 def _modes(result: Result) -> Iterator[tuple[str, str]]:
     system = result.certification.system
     if not isinstance(result.loaded.spec, InteractionDesignSpec):
-        names = shortened([mode.name for mode in system.modes], 4)
+        names = list_first([mode.name for mode in system.modes], 4)
         yield "Modes", Linked(f"{names}; {system.time} time", section=MODES)
 
 

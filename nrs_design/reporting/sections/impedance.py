@@ -67,8 +67,11 @@ def _limit(value: float | None) -> str:
 _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Desired impedance [N·m·s/rad]", lambda item: number(item.problem.desired, 5)),
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
-    ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
-    ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
+    (
+        "Stiffness beside the damper [N·m/rad]",
+        lambda item: _format_parameter(item, "parallel_stiffness"),
+    ),
+    ("Nominal damping [N·m·s/rad]", lambda item: _format_parameter(item, "damping", "0")),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
     (
@@ -85,37 +88,39 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
 
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
     """Show cost, margins and curves of the impedance controllers."""
-    drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
-    rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
+    plotted = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
+    omission = "" if len(plotted) == len(items) else f" The first {CURVES} controllers are drawn."
     title = "Impedance controllers: gains, and the worst over the ranges"
-    tables = by_controller(designed.loaded, title, _IMPEDANCE_ROWS, items)
-    said = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
-    paragraphs = [Paragraph(" ".join(said))]
+    tables = controller_tables(designed.loaded, title, _IMPEDANCE_ROWS, items)
+    meanings = (MEANING[0], LIMIT_MEANING, MEANING[-1], COST_MEANING)
+    paragraphs = [Paragraph(" ".join(meanings))]
     if any(item.band for item in items):
         paragraphs.append(Paragraph(_PASSIVE))
     if any(item.problem.loop.contact.has_memory for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
-    figures = _figures(drawn, rest) if drawn else ()
+    figures = _figures(plotted, omission) if plotted else ()
     return Section("Impedance control", (*paragraphs, *tables, *figures))
 
 
-def _figures(drawn: Sequence[ImpedanceAnalysis], rest: str) -> tuple[Illustration, Illustration]:
+def _figures(
+    plotted: Sequence[ImpedanceAnalysis], omission: str
+) -> tuple[Illustration, Illustration]:
     displayed = Illustration(
         "displayed-impedance",
         "Displayed and desired impedance",
         "Magnitude of the impedance that the operator feels in nominal contact, of the loop that "
         "is proved at its nominal values (solid; a sampled law with a spring has no curve), and "
         "the desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what "
-        f"the goal allows up to there, or what is usual.{rest}",
-        _draw_displayed_impedance(drawn),
+        f"the goal allows up to there, or what is usual.{omission}",
+        _draw_displayed_impedance(plotted),
     )
     sensitivity = Illustration(
         "sensitivity",
         "Sensitivity",
         "Magnitude of 1/(1 + L) with the open loop L, at the corner of the ranges where its peak "
         "is largest; the marker is that peak Ms. A value above 1 (gray line) amplifies "
-        f"disturbances of that frequency.{rest}",
-        _draw_sensitivity(drawn),
+        f"disturbances of that frequency.{omission}",
+        _draw_sensitivity(plotted),
     )
     return displayed, sensitivity
 
@@ -135,13 +140,13 @@ def _not_passive(band: PassiveBand | None) -> str:
     return upper(band.broken * Fraction(1000, 6283), 4)
 
 
-def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
+def _format_parameter(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
     """Write a parameter of the nominal contact, if its law has it."""
     value = item.problem.loop.contact.spec_fields().get(key)
     return number(float(value), 5) if value is not None else default
 
 
-def by_controller(
+def controller_tables(
     loaded: LoadedSpec,
     title: str,
     rows: Sequence[tuple[str, Callable[[T], str]]],
@@ -153,16 +158,16 @@ def by_controller(
     """
     tables = []
     for start in range(0, len(items), _COLUMNS):
-        some = items[start : start + _COLUMNS]
+        group = items[start : start + _COLUMNS]
         cells = [
             (
                 label if label in _FREQUENCIES else labelled(label),
-                *(linked(loaded, value(item), "controllers", item.name) for item in some),
+                *(linked(loaded, value(item), "controllers", item.name) for item in group),
             )
             for label, value in rows
             if any(map(value, items))
         ]
-        tables.append(Table(title, ("", *(item.name for item in some)), tuple(cells)))
+        tables.append(Table(title, ("", *(item.name for item in group)), tuple(cells)))
     return tables
 
 
@@ -176,10 +181,10 @@ def _draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
     omega = _frequencies(items)
     for index, item in enumerate(items):
         nominal = item.requirement.nominal[0]
-        shown = item.requirement.displayed(nominal, item.Mt, item.Bt, omega)
-        if shown is not None:
+        response = item.requirement.displayed(nominal, item.Mt, item.Bt, omega)
+        if response is not None:
             look = curve(index, len(items), len(omega))
-            axes.loglog(omega, np.abs(shown), label=f"{item.name}, displayed", **look)
+            axes.loglog(omega, np.abs(response), label=f"{item.name}, displayed", **look)
         desired, factor = float(item.problem.desired), band_factor(item)
         tint, dashes = color(index), (0, (5, 3))
         label = f"{item.name}, desired"
@@ -208,12 +213,12 @@ def _draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
     for index, item in enumerate(items):
         worst, loops = item.worst(SENSITIVITY_PEAK), _worst_loops(item)
         magnitude = np.abs(1 / (1 + loops.response(omega)[0]))
-        peak, at = worst.value, float(loops.peak_frequency()[0])
+        peak, frequency = worst.value, float(loops.peak_frequency()[0])
         label = f"{item.name}, Ms = {worst.measure.text(peak)}"
         axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
-        if math.isfinite(at) and math.isfinite(peak):
+        if math.isfinite(frequency) and math.isfinite(peak):
             shape, tint = marker(index), color(index)
-            axes.plot(at, peak, shape, color=tint, markeredgecolor=INK, markersize=8)
+            axes.plot(frequency, peak, shape, color=tint, markeredgecolor=INK, markersize=8)
     axes.axhline(1.0, color=MUTED, linewidth=1.0)
     _finish(axes, items, "Sensitivity magnitude [1]")
     legend(figure, axes)

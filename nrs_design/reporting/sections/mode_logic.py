@@ -44,17 +44,17 @@ def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
 def _switches(logic: ThresholdLogicSpec) -> Table:
     rows = []
     for number, switch in enumerate(logic.switches, 1):
-        ends, when, reach = values_at_switch(logic, switch), list[str](), list[str]()
+        ends, conditions, signal_bounds = values_at_switch(logic, switch), list[str](), list[str]()
         for name, condition in switch.conditions.items():
-            at = Fraction(ends[name])
+            threshold = Fraction(ends[name])
             if condition.above is not None:
-                when.append(f"{name} above {condition.above.text}")
-                reach.append(f"{name} ≤ {upper(at)} {_UNITS[name]}")
+                conditions.append(f"{name} above {condition.above.text}")
+                signal_bounds.append(f"{name} ≤ {upper(threshold)} {_UNITS[name]}")
             elif condition.below is not None:
-                when.append(f"{name} below {condition.below.text}")
-                reach.append(f"{name} ≥ {lower(at)} {_UNITS[name]}")
+                conditions.append(f"{name} below {condition.below.text}")
+                signal_bounds.append(f"{name} ≥ {lower(threshold)} {_UNITS[name]}")
         leads = f"{number}: {switch.source} to {switch.target}"
-        rows.append((leads, " and ".join(when), ", ".join(reach)))
+        rows.append((leads, " and ".join(conditions), ", ".join(signal_bounds)))
     columns = ("Switch", "When", "True signal then, at worst")
     return Table("Switches, in the order in which they are tried", columns, tuple(rows))
 
@@ -62,10 +62,11 @@ def _switches(logic: ThresholdLogicSpec) -> Table:
 def _stays(logic: ThresholdLogicSpec) -> Table:
     rows = []
     for name in logic.controllers:
-        stay, derived, apart = logic.stay(name), logic.derived(name), logic.tightest(name)
+        stay, derived, separation = logic.stay(name), logic.derived(name), logic.tightest(name)
         moves = "–"
-        if apart is not None and apart.signal is not None:
-            moves = f"{apart.signal}, from switch {apart.entering + 1} to {apart.leaving + 1}"
+        if separation is not None and separation.signal is not None:
+            switches = f"from switch {separation.entering + 1} to {separation.leaving + 1}"
+            moves = f"{separation.signal}, {switches}"
         texts = ("–" if time is None else time.text for time in (stay, derived))
         rows.append((name, *texts, moves, f"{upper(logic.held_back(name))} s"))
     columns = (
@@ -107,11 +108,11 @@ def _controller_summary(logic: ThresholdLogicSpec, name: str) -> dict[str, objec
         "held_back_at_most": float(logic.held_back(name)),
         "pairs": [
             {
-                "entering": apart.entering + 1,
-                "leaving": apart.leaving + 1,
-                "signal": apart.signal,
-                "at_least": float(lower(apart.seconds)),
+                "entering": separation.entering + 1,
+                "leaving": separation.leaving + 1,
+                "signal": separation.signal,
+                "at_least": float(lower(separation.seconds)),
             }
-            for apart in logic.pairs(name)
+            for separation in logic.pairs(name)
         ],
     }

@@ -13,8 +13,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
-from nrs_design.reporting.formatting import number, roots, shortened
-from nrs_design.reporting.sections.places import contact_at, linked, mode_at
+from nrs_design.reporting.formatting import list_first, number, roots
+from nrs_design.reporting.sections.places import linked, locate_contact, locate_mode
 from nrs_design.reporting.sections.titles import MODES
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import mode_eigenvalues, mode_rates
@@ -23,8 +23,8 @@ from nrs_design.spec import LoadedSpec
 Spectra = Sequence[NDArray[np.complex128]]
 
 # A page holds no more; those nearest to the limit are shown.
-_LISTED = 24
-_DRAWN = 256
+_MAX_ROWS = 24
+_MAX_MODES = 256
 _MANY_STATES = 6
 
 
@@ -32,15 +32,15 @@ def modes_section(loaded: LoadedSpec, system: SwitchedSystem, rate: Fraction | N
     """List the modes with their eigenvalues."""
     values = mode_eigenvalues(system)
     slowest = _slowest_first(values, system.time)
-    drawn = np.sort(slowest[:_DRAWN])
-    names, spectra = [system.modes[i].name for i in drawn], [values[i] for i in drawn]
+    plotted = np.sort(slowest[:_MAX_MODES])
+    names, spectra = [system.modes[i].name for i in plotted], [values[i] for i in plotted]
     figure = draw_eigenvalues(names, spectra, system.time, rate)
-    caption = _caption(system, len(drawn), rate)
+    caption = _caption(system, len(plotted), rate)
     return Section(
         MODES,
         (
-            Paragraph(f"States, in this order: {shortened(system.states, 16)}."),
-            _table(loaded, system, values, slowest[:_LISTED]),
+            Paragraph(f"States, in this order: {list_first(system.states, 16)}."),
+            _table(loaded, system, values, slowest[:_MAX_ROWS]),
             Illustration("eigenvalues", "Eigenvalues of the modes", caption, figure),
         ),
     )
@@ -58,8 +58,8 @@ def hardest_modes(system: SwitchedSystem, Q: Array | None, limit: int) -> Switch
     else:
         rates = mode_rates(system, Q)
         slowest = np.argsort(rates if system.time is Time.CONTINUOUS else -rates, kind="stable")
-    kept = np.sort(slowest[:limit])
-    return replace(system, modes=tuple(system.modes[i] for i in kept))
+    indices = np.sort(slowest[:limit])
+    return replace(system, modes=tuple(system.modes[i] for i in indices))
 
 
 def _slowest_first(values: Spectra, time: Time) -> NDArray[np.int64]:
@@ -69,37 +69,41 @@ def _slowest_first(values: Spectra, time: Time) -> NDArray[np.int64]:
 
 
 def _table(
-    loaded: LoadedSpec, system: SwitchedSystem, values: Spectra, listed: NDArray[np.int64]
+    loaded: LoadedSpec, system: SwitchedSystem, values: Spectra, indices: NDArray[np.int64]
 ) -> Table:
     continuous = system.time is Time.CONTINUOUS
     rows = []
-    for i in np.sort(listed):
+    for i in np.sort(indices):
         row = sorted(values[i].tolist(), key=lambda z: -(z.real if continuous else abs(z)))
         worst = row[0].real if continuous else abs(row[0])
-        shown = roots(row[:_MANY_STATES], 5) + (" …" if len(row) > _MANY_STATES else "")
+        root_texts = roots(row[:_MANY_STATES], 5) + (" …" if len(row) > _MANY_STATES else "")
         name = system.modes[i].name
-        home = mode_at(loaded, name)
-        touched = contact_at(loaded, name) or home
-        numbers = (linked(loaded, text, *touched) for text in (shown, number(worst, 5)))
+        home = locate_mode(loaded, name)
+        contact = locate_contact(loaded, name) or home
+        numbers = (linked(loaded, text, *contact) for text in (root_texts, number(worst, 5)))
         rows.append((linked(loaded, name, *home), *numbers))
     unit = " [1/s]" if continuous else ""
     size = "Largest real part [1/s]" if continuous else "Largest modulus"
-    some = "" if len(rows) == len(system.modes) else f", the {len(rows)} slowest of them"
-    title = f"The {len(system.modes)} modes{some}" if len(system.modes) > 1 else "The one mode"
+    scope = "" if len(rows) == len(system.modes) else f", the {len(rows)} slowest of them"
+    title = f"The {len(system.modes)} modes{scope}" if len(system.modes) > 1 else "The one mode"
     return Table(title, ("Mode", f"Eigenvalues{unit}", size), tuple(rows))
 
 
-def _caption(system: SwitchedSystem, drawn: int, rate: Fraction | None) -> str:
-    some = "" if drawn == len(system.modes) else f" The {drawn} slowest modes are drawn."
+def _caption(system: SwitchedSystem, plotted_count: int, rate: Fraction | None) -> str:
+    omission = (
+        ""
+        if plotted_count == len(system.modes)
+        else f" The {plotted_count} slowest modes are drawn."
+    )
     lasting = len(system.lasting_modes())
-    which = "all" if lasting == len(system.modes) else "those of modes that may last"
+    subject = "all" if lasting == len(system.modes) else "those of modes that may last"
     if system.time is Time.CONTINUOUS:
         text = "A mode is stable if all its eigenvalues lie left of the imaginary axis"
-        border = f"; {which} lie left of the dashed line, the proved rate."
+        border = f"; {subject} lie left of the dashed line, the proved rate."
     else:
         text = "A mode is stable if all its eigenvalues lie inside the unit circle"
-        border = f"; {which} lie inside the dashed circle, the proved contraction."
+        border = f"; {subject} lie inside the dashed circle, the proved contraction."
     text += border if rate and lasting else "."
     if lasting < len(system.modes):
         text += " A mode that must be left need not be stable."
-    return f"{text} Stable modes alone do not make switching stable.{some}"
+    return f"{text} Stable modes alone do not make switching stable.{omission}"

@@ -8,7 +8,7 @@ from nrs_design.certificates.catalogue import AssumptionKind
 from nrs_design.reporting.document import Linked
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchedSystemSpec
 
-At = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 
 def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
@@ -16,11 +16,11 @@ def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
 
     What is not written out is led to where it would be.
     """
-    written = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
-    return Linked(text, loaded.place(*at).line) if written else text
+    is_declared = bool(at) and text not in ("", "–") and loaded.place(at[0]) != loaded.place()
+    return Linked(text, loaded.place(*at).line) if is_declared else text
 
 
-def mode_at(loaded: LoadedSpec, mode: str) -> At:
+def locate_mode(loaded: LoadedSpec, mode: str) -> KeyPath:
     """Return where a spec says most of a mode: its matrix, or its controller."""
     spec, first = loaded.spec, mode.split("/")[0]
     if isinstance(spec, SwitchedSystemSpec):
@@ -31,7 +31,7 @@ def mode_at(loaded: LoadedSpec, mode: str) -> At:
     return ()
 
 
-def contact_at(loaded: LoadedSpec, text: str) -> At:
+def locate_contact(loaded: LoadedSpec, text: str) -> KeyPath:
     """Return where a spec describes the contact that a text names, if it names one."""
     spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
@@ -40,6 +40,6 @@ def contact_at(loaded: LoadedSpec, text: str) -> At:
     return next((("environments", name) for name in spec.environments if name in words), ())
 
 
-def assumed_at(kind: AssumptionKind) -> At:
+def locate_assumption(kind: AssumptionKind) -> KeyPath:
     """Return where a spec says what an assumption is about, if it does."""
     return tuple(kind.about.split(".")) if kind.about else ()

@@ -19,14 +19,14 @@ from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec
 
 _CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."
-_OTHER_TIMES = "Periods, and times of commands, other than those that the spec says."
-_ROUNDED = "What the processor rounds."
-_KEPT = "Loss of contact: no mode describes a compliant controller in free motion."
-_ALONE = "Coupling between the axes of the robot."
+_TIMING = "Periods, and times of commands, other than those that the spec says."
+_ROUNDING = "What the processor rounds."
+_CONTACT_LOSS = "Loss of contact: no mode describes a compliant controller in free motion."
+_COUPLING = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
 _BOUNDED = "Sizes of velocities and torques other than those bounded above."
 _SATURATED = "Friction, backlash, and saturation of motor or driver."
-_IN_A_REGION = (
+_REGIONAL_SATURATION = (
     "Friction, backlash, and saturation but for that of the commands in motions that begin within "
     "what is stated above."
 )
@@ -72,7 +72,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     if design:
         proved.append(_GAINS)
     proved += _bounds(result.certification)
-    proved += _beside(result)
+    proved += _saturation_claims(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(dict.fromkeys(proved))),
@@ -92,13 +92,13 @@ def _bounds(certification: Certification) -> list[str]:
     ]
 
 
-def _beside(result: Result) -> Iterator[str]:
+def _saturation_claims(result: Result) -> Iterator[str]:
     """Yield the claims about saturation."""
-    system, ranged = result.certification.system, result.loaded.spec.has_ranges
+    system, has_ranges = result.certification.system, result.loaded.spec.has_ranges
     for item in result.certification.statements:
         if item.shows is Shows.REGION:
             yield item.claim(system)
-            if ranged:
+            if has_ranges:
                 yield all_corners(system, item, page_of(system, item).changing)
 
 
@@ -106,19 +106,15 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     """Say what a proof about an interaction design leaves open."""
     certification = result.certification
     system, evidence = certification.system, certification.evidence
-    covers = evidence is not None and evidence.covers_lost_contact
+    covers_contact_loss = evidence is not None and evidence.covers_lost_contact
     exact = evidence is None or not evidence.covers_rounding
     driven = keeps_command(system, certification.statements)
     regional = any(item.shows is Shows.REGION for item in certification.statements)
     return (
-        *(
-            (_CONTINUOUS,)
-            if system.time is Time.CONTINUOUS
-            else (_OTHER_TIMES, *(_ROUNDED,) * exact)
-        ),
-        *(() if covers else (_KEPT,)),
-        _ALONE,
-        _IN_A_REGION if regional else _UNSATURATED if driven else _SATURATED,
+        *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_TIMING, *(_ROUNDING,) * exact)),
+        *(() if covers_contact_loss else (_CONTACT_LOSS,)),
+        _COUPLING,
+        _REGIONAL_SATURATION if regional else _UNSATURATED if driven else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
     )
@@ -128,11 +124,11 @@ def _not_covered(system: SwitchedSystem, evidence: AbstractEvidence) -> tuple[st
     jumps = "jumps of the state at a switch"
     if system.switching.resets:
         jumps = "jumps of the state other than the declared resets"
-    outside = " (and outside their convex combinations)"
+    mixture_note = " (and outside their convex combinations)"
     return (
         "Whether the matrices describe the real system: they are taken from the spec as they are.",
         f"Inputs, disturbances, and {jumps}.",
-        f"Dynamics outside the modes{outside if evidence.covers_mixtures else ''}.",
+        f"Dynamics outside the modes{mixture_note if evidence.covers_mixtures else ''}.",
         "Sampling, delay, quantization, friction and saturation, unless the matrices contain them.",
         "The size of the states in physical units.",
     )
@@ -161,6 +157,6 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
             "stable without one"
         )
     texts.append(f"{may}, or some switching signal may make it unstable.")
-    where = certification.refuted_in
-    title = "Neither proved nor refuted" if where is None else f"Open; refuted {where}"
+    contact = certification.refuted_in
+    title = "Neither proved nor refuted" if contact is None else f"Open; refuted {contact}"
     return (Bullets(title, tuple(texts)),)

@@ -16,7 +16,7 @@ from nrs_design.certificates.catalogue import (
 from nrs_design.pipeline.certification import Result
 from nrs_design.proof.assumption import Assumption
 from nrs_design.reporting.document import Bullets, Listing, Paragraph, Section, Table
-from nrs_design.reporting.sections.places import assumed_at, linked
+from nrs_design.reporting.sections.places import linked, locate_assumption
 from nrs_design.reporting.sections.titles import ASSUMPTIONS, RECHECK, RUNGS, SPEC
 from nrs_design.search.certification import Certification
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -39,7 +39,7 @@ def assumptions_section(result: Result) -> Section:
         (
             e.kind.name,
             e.statement,
-            linked(result.loaded, e.bound, *assumed_at(e.kind)),
+            linked(result.loaded, e.bound, *locate_assumption(e.kind)),
             e.kind.breaks,
             e.kind.test,
             str(e.standing),
@@ -102,14 +102,14 @@ class Entry:
     standing: Standing
 
 
-def register_of(granted: Iterable[Assumption], spec: Spec | None = None) -> tuple[Entry, ...]:
+def register_of(assumptions: Iterable[Assumption], spec: Spec | None = None) -> tuple[Entry, ...]:
     """Return the register of assumptions, in order.
 
     Motor and environments count as tested where the spec names measured records that they were
     identified from, and no doubt.
     """
     tested = frozenset(_tested(spec)) if isinstance(spec, InteractionDesignSpec) else frozenset()
-    kinds = ((assumption, catalogue_kind(assumption)) for assumption in granted)
+    kinds = ((assumption, catalogue_kind(assumption)) for assumption in assumptions)
     return tuple(
         Entry(
             sentence(assumption),
@@ -123,8 +123,8 @@ def register_of(granted: Iterable[Assumption], spec: Spec | None = None) -> tupl
 
 def _tested(spec: InteractionDesignSpec) -> Iterator[str]:
     measured = {
-        at[-1]
-        for at, item in spec.identified.items()
+        key_path[-1]
+        for key_path, item in spec.identified.items()
         if item.provenance
         and all(source.data == "measured" for source in item.provenance)
         and not item.doubts

@@ -89,7 +89,7 @@ def check(
         sys.stdout.write(FORMATS[output_format](outcome))
     elif wants_text():
         _show(outcome)
-    raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])
+    raise typer.Exit(exit_codes.SEVERITY_CODES[outcome.severity])
 
 
 def _show(outcome: GateOutcome) -> None:

@@ -81,7 +81,7 @@ def export(
         "controllers": {item.controller: item.verdict for item in found},
         "files": list(map(str, outputs)),
     }
-    return Answer(lambda: facts, show, exit_codes.OF_VERDICT[worst], loud=not outputs)
+    return Answer(lambda: facts, show, exit_codes.VERDICT_CODES[worst], loud=not outputs)
 
 
 def _check_axis(loaded: LoadedSpec, axis: str) -> None:

@@ -63,7 +63,7 @@ class Further:
             from nrs_design.pipeline.blocked import blocked_lines
 
             yield from (f"  {line}" for line in blocked_lines(self.blocked, loaded.path))
-        # The most promising step alone, where nothing better was said.
+        # Without -v, show the most promising step only, and none after another remedy.
         steps = self.steps if verbose else () if is_helped or self.relief else self.steps[:1]
         yield from (f"next: {line}" for line in steps)
 
@@ -163,7 +163,7 @@ class Decision(AbstractResult):
         return facts if self.further is None else facts | self.further.facts(path)
 
     def lines(self, *, verbose: bool = False) -> Iterator[str]:
-        """Yield verdict, claims and goals in words; verbose: full claims and all attempts."""
+        """Yield verdict, claims and goals as lines; verbose: full claims and all attempts."""
         from nrs_design.certificates.goals import certified_goals
 
         found, result = self.result.certification, self.result
@@ -255,7 +255,7 @@ class Decision(AbstractResult):
         return build_report(self.result, judged_if_stable(self.result.designed))
 
     def __bool__(self) -> bool:
-        """Whether it is proved; neither a refutation nor an open question counts."""
+        """Return True for a proof, False for a refutation and for an inconclusive search."""
         return self.verdict == "proved"
 
     def _repr_html_(self) -> str:

@@ -52,7 +52,7 @@ def exact_matrix(rows: Sequence[Sequence[Fraction]], name: str = "the matrix") -
 
 
 def read_number(value: object, name: str = "the value") -> Fraction:
-    """Read a number exactly: text as it is written, a float as the binary number that it is."""
+    """Return the exact value of a number: of a text in decimal, of a float in binary."""
     if isinstance(value, str | Decimal):
         return parse_exact(str(value))
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -89,7 +89,7 @@ def time_of(modes: Sequence[object], time: str | None) -> Time:
     periods: list[Any] = [getattr(mode, "dt", None) for mode in modes if is_state_space(mode)]
     known = [period for period in periods if period is not None]
     domains = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
-    # True is a step of any length, though it equals one second.
+    # True means a step of unspecified length, although True == 1.
     steps = {period for period in known if period is not True}
     if time is not None:
         domains.add(Time(time))

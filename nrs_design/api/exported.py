@@ -106,5 +106,5 @@ class Exported(AbstractResult):
         yield from Optimum(designed).gain_rows()
 
     def __bool__(self) -> bool:
-        """Whether it is proved."""
+        """Return True if the exported design is proved."""
         return self.verdict == "proved"

@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-# A rate is sharpened to one part in two to this power of the range that it may lie in.
+# Bisection steps for the rate: each step halves the interval of the rate.
 RATE_BITS = 20
 # How many decisions about all modes that takes, nearly.
 DECISIONS = 2 * RATE_BITS
 # A counterexample is written with as few of these decimal digits as show it.
 DIGITS = (1, 2, 4, 8, 16)
-# A longer number is written rounded in words.
+# Characters of an exact number in text; longer numbers are rounded for display.
 LONGEST = 60
 _LAW = {"continuous": "x' = A x", "discrete": "x+ = A x"}
 # Form that must be negative, by time and presence of a rate.
@@ -52,12 +52,11 @@ _CHANGE = {
 class Counterexample:
     """A vector at which a condition on the function fails."""
 
-    # The mode in which the function does not decrease; None if it is not positive.
+    # Mode in which V does not decrease; None if P is not positive definite.
     mode: str | None
     vector: tuple[Fraction, ...]  # A nonzero x, exactly
-    # ``x' P x`` if `mode` is None, which is not positive; otherwise the derivative ``x' (A'P + PA +
-    # 2 alpha P) x`` along the mode at the rate that was asked for (discrete time: ``x' (A'PA -
-    # rho^2 P) x``), which is not negative.
+    # If `mode` is None: ``x' P x``, not positive. Otherwise: ``x' (A'P + PA + 2 alpha P) x`` of the
+    # mode at the requested rate (discrete time: ``x' (A'PA - rho^2 P) x``), not negative.
     value: Fraction
 
 
@@ -65,16 +64,16 @@ class Counterexample:
 class LyapunovCheck(AbstractResult):
     """What a quadratic function shows about a family of modes, decided exactly."""
 
-    # P is positive definite, and V decreases strictly in every mode at the rate asked for.
+    # P is positive definite, and V decreases strictly in every mode at the requested rate.
     holds: bool
     # P is positive definite, and V increases in no mode: stability, but no decay, is shown.
     weak: bool
-    # A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
-    # for if it holds, or else the best one on a fine grid, rounded to the side that is proved. None
-    # if V does not decrease strictly at any rate, or if the numbers are too large to look for one.
+    # A proved rate of V: alpha in 1/s, or rho per step in discrete time. It is the requested rate
+    # if V holds at it, else the best rate of a bisection, rounded conservatively. None if V does
+    # not decrease strictly, or if the numbers are too large for a bisection.
     rate: Fraction | None
     counterexample: Counterexample | None  # Reason for failure
-    # modes, form, time, asked: what was decided about, and at which rate; None for any of decay.
+    # modes, form, time: the input. asked: the requested rate; None requests no specific rate.
     modes: tuple[Mode, ...]
     form: RationalMatrix
     time: Time
@@ -144,7 +143,7 @@ class LyapunovCheck(AbstractResult):
         yield from (("", line) for line in self.lines())
 
     def __bool__(self) -> bool:
-        """Whether it holds."""
+        """Return True if the function holds at the requested rate."""
         return self.holds
 
 

@@ -162,7 +162,7 @@ def _validated(document: Document, name: str) -> LoadedSpec:
         spec = SwitchedSystemSpec.model_validate(document)
     except ValidationError as error:
         found = file_faults(error, SwitchedSystemSpec, parse_document(text))
-        # Lines of a file that nobody has seen would mislead.
+        # Drop line numbers: they refer to a generated text that the user never sees.
         faults = tuple(replace(fault, line=None, column=None) for fault in found)
         raise SpecError.combine(faults, None) from None
     return LoadedSpec(

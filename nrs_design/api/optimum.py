@@ -200,10 +200,10 @@ def _goal(achievement: Achieved) -> dict[str, Any]:
     return {
         "goal": measure.goal,
         "wanted": achievement.goal,
-        # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
-        # what is not computed, as `at` then says.
+        # JSON has no infinity: null is an unlimited margin, an unbounded error, or a value that is
+        # not computed (`at` distinguishes the last case).
         "worst": finite(achievement.value),
-        # What no constant values in the ranges are worse than; null is not shown.
+        # Proved bound for all constant values in the ranges; null without a proof.
         "proved": None if achievement.proved is None else unfavorable(achievement.proved),
         "unit": measure.si_unit,
         "at": achievement.where,

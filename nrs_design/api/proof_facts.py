@@ -1,4 +1,4 @@
-"""Facts of a proof and of its margins, plain and in SI; each double is rounded to its safe side."""
+"""JSON fields of a proof and its margins in SI; every double is rounded conservatively."""
 
 from __future__ import annotations
 
@@ -158,6 +158,6 @@ def _ends(bracket: Bracket) -> Facts:
 
 
 def _number(name: str, number: Fraction | None, round_number: Callable[[Fraction], float]) -> Facts:
-    """Return a number as a double on its safe side, and exactly."""
+    """Return a number as a conservatively rounded double and as an exact text."""
     exact, double = (None, None) if number is None else (str(number), round_number(number))
     return {name: double, f"{name}_exact": exact}

@@ -93,7 +93,7 @@ class Recheck(AbstractResult):
             yield "claim", claim
 
     def __bool__(self) -> bool:
-        """Whether the certificate is valid and proves; one that refutes is valid, too."""
+        """Return True for a valid proof; a valid refutation gives False."""
         return bool(self.outcome)
 
 

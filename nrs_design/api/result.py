@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting.document import Section
     from nrs_design.search.certification import Certification
 
-# Widths of one column and of both in papers of the IEEE, in.
+# Figure widths of IEEE papers in inches: one column, two columns.
 WIDTHS = {"ieee": 3.5, "ieee-two": 7.16}
 
 # Names and functions that draw the figures.
@@ -45,7 +45,7 @@ class AbstractResult(ABC):
         """Return the rows of a small table, its heads first."""
 
     def _axis(self) -> object:
-        """Return the axis that its words and units are about; what is none is one that turns."""
+        """Return the axis that sets texts and units; None stands for a rotary axis."""
         return None
 
     def to_dict(self) -> dict[str, Any]:

@@ -136,7 +136,7 @@ class Study:
         delay: int | None = None,
         certificate: str | Path | None = None,
     ) -> Simulation:
-        """Simulate scenarios of the spec, or the one of a spec that has none.
+        """Simulate scenarios of the spec, or the default scenario of a spec without scenarios.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Study:
         return WorstFound(designed, case)
 
     def export(self, certificate: str | Path | None = None) -> Exported:
-        """Return the gains that ship with their proof, or why there are none; `save` writes them.
+        """Return the exported gains with their proof, or the reason for none; `save` writes files.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class Study:
             return Exported(self.loaded, export_design(self.loaded, file))
 
     def _interaction(self, certificate: str | Path | None) -> tuple[Designed, Certificate | None]:
-        """Design what interacts, with what a file proves of it, if there is one."""
+        """Return the designed interaction, with the checked certificate if a file is named."""
         file = None if certificate is None else Path(certificate)
         return run_interaction_of(self.loaded, file, "describes no interaction")
 

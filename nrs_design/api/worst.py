@@ -44,7 +44,7 @@ class WorstFound(AbstractResult):
 
     @property
     def declared(self) -> bool:
-        """Whether the spec says what disturbs; otherwise it is any command up to its limit."""
+        """True if the spec declares disturbances; else any command up to its limit disturbs."""
         return self.case.declared
 
     def _axis(self) -> object:

@@ -32,10 +32,10 @@ GROUPS = {
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 _PANELS = {name: panel for panel, names in GROUPS.items() for name in names}
 
-# Environment variables that libraries read when they are loaded. Users cannot override them: no
-# outcome may depend on them.
+# Libraries read these environment variables at import. Users cannot override them, so that no
+# verdict depends on the environment.
 SETTINGS = {
-    # Threads would round sums differently from run to run; for small matrices they are slower, too.
+    # Several threads add in varying order, so sums would round differently from run to run.
     "OPENBLAS_NUM_THREADS": "1",
     # No other package takes part in reading specs.
     "PYDANTIC_DISABLE_PLUGINS": "__all__",
@@ -145,7 +145,7 @@ def _run() -> None:
 
 
 def main() -> None:
-    """Run the program; an error that the user can correct is one message and exit code 2."""
+    """Run the program; report a user error in one message with exit code 2."""
     os.environ.update(SETTINGS)
     if not sys.warnoptions:
         # Warnings of libraries are for programmers.

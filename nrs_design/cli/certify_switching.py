@@ -79,7 +79,7 @@ def certify_switching(
         print_granted(result)
     searches = {"margin": margin, "shortest_dwell": shortest_dwell}
     further = Further(
-        # One rung alone may be at a loss for what others prove.
+        # A single search method may miss a proof that the other methods find.
         blocked=_find_blocked(result, limits) if method is Method.AUTO else None,
         margins=_find_margins(result, limits, searches),
         relief=find_relief(result),
@@ -119,7 +119,7 @@ def _next_steps(result: Result, searches: Mapping[str, bool]) -> tuple[str, ...]
 
 
 def _write(result: Result, path: Path | None) -> Path | None:
-    """Write the certificate, if there is one and it is asked for; return where it is."""
+    """Write a certificate to the requested path; return the path, or None if nothing is written."""
     from nrs_design.certificates.ownership import write_certificate
 
     if result.certificate is None or path is None:

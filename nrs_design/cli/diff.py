@@ -1,4 +1,4 @@
-"""``nrs-design diff``: two specs or certificates beside each other."""
+"""``nrs-design diff``: compare two specs or certificates."""
 
 from __future__ import annotations
 

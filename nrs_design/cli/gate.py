@@ -93,8 +93,8 @@ def gate(
     if against is not None:
         from nrs_design.gating.against import base_paths
 
-        # Paths without a place in the base are refused before minutes of search; a lock file
-        # outside of both folders would be compared with itself.
+        # Refuse paths outside the folder before minutes of search. A lock file outside both folders
+        # would be compared with itself.
         base_paths([*paths, lock], against)
     specs = find_specs(paths)
     if locked:

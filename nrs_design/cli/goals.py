@@ -75,7 +75,7 @@ def design_answer(
     """Return the answer of a command that shows a design: the worst of it, goals, what is doubtful.
 
     The exit code is 1 if an item misses a goal, or one that needs a proof is not `proved`.
-    `judged`: `show` says what is proved of the goals of a certificate.
+    `prints_goals`: `print_design` prints the proved goals of a certificate.
     """
     from nrs_design.spec.goals import OF_THE_CERTIFICATE
 

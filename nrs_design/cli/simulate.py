@@ -116,7 +116,7 @@ def simulate(
 def _proof(
     designed: Designed, certificate: Certificate | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
-    """Return the certificate whose bounds are shown, if there is one."""
+    """Return the certificate whose bounds the runs show; None without a certificate."""
     if certificate is not None or not bound or designed.spec.disturbances is None:
         return certificate
     from nrs_design.pipeline.certification import certify_design

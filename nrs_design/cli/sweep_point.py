@@ -29,7 +29,9 @@ class Job:
 
     spec: Path  # The file, or an axis of one
     grid: Grid
-    command: tuple[str, ...]  # Words of the command, such as ``("robot", "dynamics")``
+    command: tuple[
+        str, ...
+    ]  # Name of the command, split at spaces, such as ``("robot", "dynamics")``
     options: tuple[str, ...]  # Options as typed
 
 
@@ -47,7 +49,7 @@ def answer_point(job: Job, values: tuple[str, ...]) -> PointAnswer:
     """Return the answer of the command for values of the fields, whatever goes wrong with it."""
     with saying_instead(file_of(job.spec), job.grid.changes(values)):
         try:
-            # A spec that is wrong is an error of its point, also where the command reports on it.
+            # An invalid spec is an error of its point, even for commands that report such errors.
             read_axes(job.spec)
             return PointAnswer(values, *_computed(job))
         except NrsDesignError as error:

@@ -23,14 +23,14 @@ class Format:
 
     purpose: str  # Use of the files, in a few words
     needs: str  # Condition for an export
-    # Ending of each file, after the name of the spec, and the first bytes of the file. A file that
-    # begins otherwise is not overwritten.
+    # Ending of each file, after the name of the spec, and its first bytes. A file with other first
+    # bytes is not overwritten.
     files: Mapping[str, bytes]
     # True if a processor runs the files: the proof must be about the sampled loop.
     executable: bool = False
     # True if file names must be identifiers, such as `soft_tissue` for `soft-tissue`.
     identifier: bool = False
-    # Whether a certificate is enough, without a design.
+    # True if the format needs a certificate only, and no design.
     needs_proof_only: bool = False
 
 

@@ -91,7 +91,7 @@ def compare_deployed(
 
 
 def _visible(file: Path) -> Path:
-    """Return a path up to its first hidden folder, which stands for all files in it."""
+    """Return a path, cut after its first hidden folder."""
     hidden = (k for k, part in enumerate(file.parts[:-1], 1) if part.startswith("."))
     return Path(*file.parts[: next(hidden, None)])
 

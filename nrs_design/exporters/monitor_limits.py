@@ -46,7 +46,7 @@ class MonitorLimits:
     dwell_times: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     successors: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
     sector: Sector | None  # Bounds on torque and angle; None without them in the spec
-    # Region of decay with a saturating command; None without a proof of one.
+    # Proved region of decay with a saturating command, or None.
     region: MonitoredRegion | None
     # Travel of the joint between two torque readings, at the velocity limit.
     travel: Fraction

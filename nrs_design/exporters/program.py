@@ -26,7 +26,7 @@ class Program:
 
     @property
     def description(self) -> tuple[str, ...]:
-        """What every exported file says of itself."""
+        """Header lines of every exported file."""
         return header_lines(self.record)
 
 

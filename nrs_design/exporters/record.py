@@ -136,11 +136,11 @@ class ExportRecord(_Frozen):
     spec: SpecReference
     motion: MotionController
     controllers: tuple[CompliantController, ...] = Field(min_length=1)
-    # Only where impedance controllers stand beside others.
+    # Only for impedance controllers together with other controllers.
     idle_states: IdleStates | None = None
     # Only where force controllers have one.
     offset: Literal["reference", "measured"] | None = None
-    # Only where the force passes through one on its way to the controllers.
+    # Only if the force signal is filtered before the controllers.
     force_filter: ForceFilter | None = None
     verdict: Literal["proved", "unproved"] = "proved"
     unproved: str | None = None
@@ -148,12 +148,11 @@ class ExportRecord(_Frozen):
     sample_time: SampleTime | None = None
     # Smallest and largest age of the force sample, in samples.
     delay: tuple[int, int] | None = None
-    # When commands take effect, and which periods may miss their deadline, in words; only where
-    # that is not at once, in periods of one length, and none.
+    # Text on the delay of commands, on jitter and on missed deadlines; None without them.
     timing: str | None = None
     # What no proof covers.
     outside: tuple[str, ...]
-    # Unproved, it is there where something else than the sampled loop is proved.
+    # In an unproved record: a proof about another loop, such as the one in continuous time.
     proof: Proof | None = None
 
     @model_validator(mode="after")

@@ -23,8 +23,8 @@ class StateSpaces:
     actuator: Any  # From the command, in rpm or V as the spec says, to the position in rad
     # From the commanded velocity in rad/s to the velocity, and likewise for positions.
     motion_loop: Any
-    # By name: from the force of the environment in N m, as the law gets it, to what the law adds to
-    # the command of the motion loop, in rad/s or, for laws that command a position, in rad.
+    # By name: from the interaction force in N m at the input of the law to its command for the
+    # motion loop, in rad/s or, for position commands, in rad.
     controllers: Mapping[str, Any]
 
 

@@ -44,7 +44,7 @@ class Light:
 
     name: str  # Topic, such as ``Proof``
     state: State  # Colour and sign
-    text: str  # State in words
+    text: str  # Status in a phrase
     section: str = ""  # Title of the section that says more; empty for none
 
 
@@ -128,12 +128,11 @@ class Report:
         "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
         "proof."
     )
-    # Plain sentences on top: what was shown, and under which assumptions. The claim stands below
-    # them; without them, it stands on top itself.
+    # Two sentences at the top: the conclusion and its assumptions. The claim follows them.
     summary: tuple[str, ...] = ()
     lights: tuple[Light, ...] = ()  # Below the sentences
     key: tuple[tuple[str, str], ...] = ()  # Label and value of what a reader wants to know first
-    lead: str = ""  # Name of the figure beside the key facts, or empty
+    lead: str = ""  # Name of the figure next to the key facts, or empty
     # The text of the certificate that its id is the hash of, which a page can check; or empty.
     certificate: str = ""
     # Date of the reader. Without a date, the same spec gives the same report on any day.

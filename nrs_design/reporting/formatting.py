@@ -60,7 +60,7 @@ def drawable(text: str) -> str:
 def wrapped_label(text: str, width: int) -> str:
     """Return drawable text in full, on as many lines as it needs."""
     lines: list[str] = []
-    # Names of modes are made of parts between slashes, which are the places to break at.
+    # Break names of modes at their slashes.
     for part in drawable(text).replace("/", "/\0").split("\0"):
         for piece in textwrap.wrap(part, width, drop_whitespace=False) or [""]:
             if lines and len(lines[-1]) + len(piece) <= width:

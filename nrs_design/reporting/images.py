@@ -1,4 +1,4 @@
-"""Figures as SVG elements that can stand beside others in one HTML page, and as PNG images."""
+"""Figures as SVG elements of one HTML page, as SVG files, and as PNG images."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Of the metadata, the date would differ from run to run and the rest holds addresses.
+# The date would differ from run to run, and the other metadata hold addresses.
 _NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
@@ -83,7 +83,7 @@ def _is_themed(figure: Figure) -> bool:
 
 
 def _axes(figure: Figure) -> list[list[float | bool]]:
-    """Return where all numeric axes are, in points from the upper left, and what they show."""
+    """Return position (points from the upper left), limits and scales of all numeric axes."""
     width, height = (72 * float(inches) for inches in figure.get_size_inches())
     found = []
     for axes in figure.axes:
@@ -107,7 +107,7 @@ def _is_numeric(axes: Axes) -> bool:
 
 
 def render_svg_file(figure: Figure) -> str:
-    """Return a standalone SVG file, marked as ours; the same text for the same figure."""
+    """Return a standalone SVG file with the mark of this program, equal for equal figures."""
     declaration, _, element = _savefig(figure).partition("\n")
     return f"{declaration}\n{SVG_MARK}{element}"
 
@@ -124,8 +124,8 @@ def _savefig(figure: Figure) -> str:
     buffer = io.StringIO()
     with figure_style():
         figure.savefig(buffer, format="svg", metadata=_NO_METADATA)
-    # An outline is named by a hash of where it is, of which the solver of the layout leaves the
-    # last bit open: that follows addresses in memory.
+    # matplotlib names an outline by a hash of its position. The last bit of the position depends
+    # on addresses in memory, so that the outlines are numbered instead.
     names: dict[str, str] = {}
     return re.sub(
         r"\bp[0-9a-f]{10}\b",

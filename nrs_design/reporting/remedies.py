@@ -1,4 +1,4 @@
-"""What would help: margins of a proof, and next steps where there is none, as commands."""
+"""Section "What would help": margins of a proof, or next steps as commands."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def _loop_lines(loop: MarginBrackets) -> Iterator[str]:
 def _ends(
     bracket: Bracket, format_number: Callable[[Fraction], str], proved: str, refuted: str
 ) -> str:
-    """Return what is proved and what is refuted; a star in these texts is where the number stands.
+    """Return proved and refuted ends of a bracket; a number replaces the star of each text.
 
     Where nothing is refuted, say where the search ended.
     """
@@ -176,6 +176,6 @@ def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Ite
 def _takes_dwell(result: Result) -> bool:
     """Tell whether a shortest dwell time can be searched."""
     spec, system = result.loaded.spec, result.certification.system
-    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    assert not isinstance(spec, RobotSpec), "a robot spec has no modes to certify"
     lasting = len(system.lasting_modes()) == len(system.modes)
     return system.time is Time.CONTINUOUS and lasting and spec.find_dwell_obstacle() is None

@@ -21,7 +21,7 @@ from nrs_design.reporting.images import render_svg
 
 # More letters in a row than these do not fit on a telephone, or in one line of a page.
 _NARROW, _LINE = 36, 106
-# A last column of words as short as these, such as "not met", stays in one line.
+# A last column of at most these letters, such as "not met", is not broken.
 _WORD = 16
 # Between two columns, in letters.
 _GAP = 2
@@ -67,7 +67,7 @@ def _script(name: str) -> str:
 
 
 def _escape_invisible(value: object) -> object:
-    """Escape invisible characters in all text that the template writes; markup has none."""
+    """Escape invisible characters of text; markup is returned unchanged."""
     from markupsafe import Markup
 
     return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
@@ -93,9 +93,9 @@ def _block(block: Block) -> dict[str, Any]:
 
 
 def _look(table: Table) -> str:
-    """Say which columns do not fit: on a telephone, or, as those of sentences, on any page."""
+    """Return the style classes of a table that is too wide for a telephone or for a page."""
     rows = [table.columns, *table.rows]
-    # What the widest row takes, if every column is as wide as its longest cell.
+    # Width in letters if no cell is broken.
     letters = sum(_GAP + max(map(len, column)) for column in zip(*rows, strict=True))
     if letters <= _LINE:
         return "wide" if letters > _NARROW else ""

@@ -85,7 +85,7 @@ def build_report(
             summary=summary_of(result),
             lights=lights_of(result, analysis),
             key=key_facts(result, analysis),
-            lead="run",  # Under the worst signal that was found, beside its proved bound
+            lead="run",  # The run under the worst signal found, with its proved bound
             certificate=canonical(to_document(result.certificate)) if result.certificate else "",
             date=date,
         )

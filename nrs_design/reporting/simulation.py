@@ -1,4 +1,4 @@
-"""Metrics of a run in words, with the units in which people read them."""
+"""Table rows of the metrics of a run, in display units."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def metric_rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[l
     Limits are those of the scenario; the spec's of the torque is in the metrics.
     """
     limit = f"{limits.get('torque', m['torque_limit']):.4g}"
-    # What has a limit is never shown below it, nor as nothing, where it is not.
+    # Metrics with a limit are rounded up: a violation is never displayed as within the limit.
     yield ["largest torque", four_digits_up(m["peak_torque"]), unit("N m"), limit]
     duration_label = f"time above {m['torque_limit']:.4g} {unit('N m')}"
     yield [duration_label, four_digits_up(m["time_above_limit"]), "s", "0"]

@@ -22,18 +22,18 @@ CYCLE = ("#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#E69F00")
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = CYCLE
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (6, 2)), (0, (2, 1.5)), (0, (6, 2, 1.5, 2)))
-# So many series differ in color or marker; more than these are drawn alike.
+# Number of series that differ in color or marker.
 MAX_SERIES = 24
 ALARM = "#a00000"
 INK, MUTED, GRID = "#1b1f24", "#5a6472", "#dfe3e8"
 
-# What these colours are in a page, which may be light or dark; in a file they stay as they are.
+# Names of the colours in a page, which has a light and a dark theme; files keep the colours.
 _PAGE_COLORS = {"ink": INK, "muted": MUTED, "grid": GRID, "paper": "#ffffff", "alarm": ALARM}
 _NAMES = ("blue", "vermillion", "green", "purple", "sky", "orange")
 _PAGE_COLORS |= dict(zip(_NAMES, CYCLE, strict=True))
 THEMED = {tint.lower(): f"var(--{name},{tint})" for name, tint in _PAGE_COLORS.items()}
 
-# In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
+# Width in inches; text of this figure is legible when a telephone scales it to the page.
 _WIDTH = 5.4
 _LABEL_LETTERS = 24
 # In points.
@@ -75,7 +75,7 @@ P = ParamSpec("P")
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """What a figure is drawn for."""
+    """Width and letter size of a figure."""
 
     width: float = _WIDTH  # In inches
     letters: float = _LETTERS  # In points
@@ -83,7 +83,7 @@ class _Sheet:
 
     @property
     def room(self) -> float:
-        """How many letters there is room for, over those in a figure of the report."""
+        """Letters per line, relative to a figure of the report."""
         return self.width / _WIDTH * _LETTERS / self.letters
 
 
@@ -93,7 +93,7 @@ _SHEET: ContextVar[_Sheet] = ContextVar("sheet", default=_PAGE)
 
 @contextmanager
 def for_paper(width: float | None) -> Iterator[None]:
-    """Draw figures as wide as a paper wants, in inches, with its letters; None leaves what is."""
+    """Set width in inches and letter size of a paper; None keeps the current settings."""
     token = _SHEET.set(_SHEET.get() if width is None else _Sheet(width, _PAPER_LETTERS, paper=True))
     try:
         yield
@@ -139,7 +139,7 @@ def _shrink(figure: Figure) -> None:
 
 
 def settle(figure: Figure) -> None:
-    """Lay a figure out for good, once; where an aspect is kept, only drawing it does that."""
+    """Fix the layout of a figure once; a fixed aspect ratio needs a drawing for this."""
     engine = figure.get_layout_engine()
     if engine is None:
         return
@@ -234,7 +234,7 @@ def write_ticks_in_full(figure: Figure) -> None:
 
     class PowerFormatter(LogFormatter):
         def __call__(self, value: float, pos: int | None = None) -> str:
-            # Where the axis spans few decades, ticks between powers have labels, too.
+            # On an axis of few decades, ticks between powers have labels.
             return format_tick(value, abs(value) or 1.0) if super().__call__(value, pos) else ""
 
     for axes in figure.axes:

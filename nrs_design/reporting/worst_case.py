@@ -138,7 +138,7 @@ def _controller(mode: str) -> str:
 def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
     factor, unit = scale_of(output.name, output.unit, lever_arm)
     values = factor * output_values(case.system, output, run.states)
-    # Of all values over the range of the contact, those that go farthest.
+    # Over the range of the contact, take the signal with the largest magnitude.
     farthest = values[:, np.abs(values).max(axis=0).argmax()]
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
     both_signs, signs = (1, -1), (1,) if pushes_only(case.system, output) else (1, -1)

@@ -181,7 +181,7 @@ def _value(value: Any, log2: int = 0) -> Any:
             try:
                 return float(Fraction(value))
             except OverflowError:
-                # The digits stand for a number that is larger than any double.
+                # The number is larger than any double: keep its digits as text.
                 return str(Fraction(value))
         case _:
             return value

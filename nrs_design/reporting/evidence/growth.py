@@ -163,7 +163,7 @@ def _repeated(system: SwitchedSystem, offer: Offer) -> Iterator[Block]:
     if offer.factor is not None:
         system = all_modes(system)
         system = system.with_modes(system.modes, system.states, ARBITRARY)
-        # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
+        # In continuous time, the sequence has one mode, and `factor` is a rate in 1/s.
         start, edges, low = float(offer.factor), (), float(offer.factor)
         if not discrete:
             time, start = 1 / max(low, 1e-9), math.e

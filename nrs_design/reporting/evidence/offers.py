@@ -69,11 +69,11 @@ def _quadratic_offer(e: Any) -> Offer:
 
 
 def _graph(e: Any) -> Offer:
-    """Return the forms: one of several at a place by name, free motion where it is none of them."""
+    """Return the quadratic forms of a Lyapunov graph, with their names and free motion."""
     if e.stays is not None:
         forms = tuple(Form(Q, place, e.degree) for place, Q in e.nodes)
         return Offer(forms, e.denominator_log2, leaving=e.stays.leaving)
-    # A form that remembers steps is of a word, not of the mode that leaves it.
+    # A path-dependent form belongs to a mode sequence, not to the mode of its outgoing edge.
     names = {edge.source: edge.mode or "" for edge in e.edges if edge.target is None}
     touching, flying = list[Form](), list[Form]()
     for k, (place, Q) in enumerate(e.nodes):

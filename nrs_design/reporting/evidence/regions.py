@@ -32,7 +32,7 @@ _CONTENT = (
 def bound_page(system: SwitchedSystem, evidence: AbstractEvidence, _: Offer) -> Page:
     """Return the level that an output does not exceed."""
     bound = evidence.bound(system)
-    assert bound is not None  # it shows one
+    assert bound is not None, "bound evidence has a bound"
     limits = ("What happens between two steps.",) if system.time is Time.DISCRETE else ()
     return Page(
         "bound on an output under a disturbance",

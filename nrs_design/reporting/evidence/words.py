@@ -164,9 +164,10 @@ def all_corners(system: SwitchedSystem, evidence: AbstractEvidence, method: str)
 def function(
     system: SwitchedSystem, *, covers_contact_loss: bool, has_several: bool
 ) -> Iterator[str]:
-    """Say what the functions measure, where they are not simply a norm of all states.
+    """Explain the functions, unless each of them is a norm of all states.
 
-    `lost`: they cover the loss of contact. `each`: one for each mode, or for each step of a round.
+    `covers_contact_loss`: the functions cover the loss of contact. `has_several`: every mode, or
+    every step of a hyperperiod, has its own function.
     """
     if system.clock is not None:
         clock_text = _DWELL_TEXT if system.clock.counts_stays else _MISSES

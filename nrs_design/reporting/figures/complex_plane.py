@@ -131,7 +131,7 @@ def _mark(
 
 # A value this many times beyond the next one, and beyond most, lies far.
 _FAR = 10.0
-# Share of a half axis that the linear part takes, over that of the logarithmic one.
+# Length of the linear part of a half axis, relative to its logarithmic part.
 _LINEAR_SHARE = 1.5
 _DECADES = 3
 
@@ -179,7 +179,7 @@ def _set_axis(
     limits: tuple[float, float],
     end: float,
 ) -> None:
-    """Give an axis its limits and label; beyond the end of its linear part it is logarithmic."""
+    """Set limits and label of an axis that is linear in the middle and logarithmic outside."""
     low, high = limits
     label = {"x": "Real part", "y": "Imaginary part"}[name]
     if math.isfinite(end):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.switched import SwitchedRun
 
-# More modes than these share a row, and a color; so many at most have one each by all means.
+# Largest number of rows, and number of modes up to which every mode has a row of its own.
 _ROWS, _SINGLE_ROWS = 24, 6
 
 

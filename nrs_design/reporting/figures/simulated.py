@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from nrs_design.simulation.time_response import TimeResponse
 
-# A bound beyond so many times the largest torque is named at the edge, not drawn to scale.
+# A bound above this multiple of the largest torque is named at the edge, not drawn to scale.
 _FAR = 4.0
 _FIRST: dict[str, Any] = {"color": BLUE, "lw": 1.6}
 _SECOND: dict[str, Any] = {"color": INK, "lw": 1.2, "linestyle": (0, (6, 2, 1.5, 2))}
@@ -53,7 +53,7 @@ class Panel:
     curves: dict[str, NDArray[np.float64]]  # By name, shape (N,), in the unit
     limits: tuple[float, ...] = ()  # Horizontal lines
     bounds: tuple[float, ...] = ()  # Horizontal lines that nothing crosses
-    bound: str = ""  # What they are
+    bound: str = ""  # Legend of the bounds
 
 
 def draw_simulated(
@@ -132,7 +132,7 @@ def _draw_panel(
 ) -> None:
     for look, (name, y) in zip((_FIRST, _SECOND), panel.curves.items(), strict=False):
         (line,) = axes.plot(t, y, label=name, **look)
-        # What stands alone is named by its axis.
+        # The label of the axis names a single curve.
         if len(panel.curves) > 1:
             handles.setdefault(name, line)
     lines = [(level, "limit of the spec", _LIMIT) for level in panel.limits]

@@ -99,7 +99,7 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
 
 
 def motion_blocks(designed: Designed, analysis: DesignAnalysis) -> tuple[Block, ...]:
-    """Say which motion loop is in use, and what was wanted of it and is reached."""
+    """Describe the motion loop: its source, its requirements and the achieved values."""
     spec = designed.spec
     G = analysis.motion
     text = (
@@ -143,7 +143,7 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, target: PdDesign
     damping = -target.wanted_poles[0].real / target.natural_frequency
     per, six = unit("rad"), partial(number, digits=6)
     Kd, zero, omega = target.derivative_gain, target.zero, target.natural_frequency
-    # The key of the spec that says most of a row, its label, and what is wanted and reached.
+    # Key of the spec, label, target and achieved value.
     rows = (
         ("derivative_gain", f"Kd [{command}·s/{per}]", six(Kd), six(float(motion.Kd))),
         ("zero", "Zero Kp/Kd [1/s]", six(zero), six(float(motion.zero))),

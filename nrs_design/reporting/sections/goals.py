@@ -43,7 +43,7 @@ def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | 
 
 
 def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State, str]:
-    """Return how all goals of a spec stand together, and the same in words."""
+    """Return the common state of all goals of a spec, and its summary."""
     proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
     measured = () if analysis is None else analysis.measured
     goals = [found for item in measured for found in item.judged_goals]
@@ -101,7 +101,7 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
 
 
 def _place(loaded: LoadedSpec, controller: str, goal: str) -> tuple[str, ...]:
-    """Return the keys of the controller's own goal, or of the one for all."""
+    """Return the key path of a goal: of the controller, else of the whole spec."""
     spec = loaded.spec
     assert isinstance(spec, InteractionDesignSpec), "it has controllers"
     own_goals = spec.controllers[controller].goals

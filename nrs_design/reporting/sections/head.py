@@ -52,7 +52,7 @@ REFUTED_ASIDE = (
 
 
 def claim_of(certification: Certification) -> str:
-    """Return what the certificate claims about stability, or that there is nothing to claim."""
+    """Return the claim of the certificate about stability, or `NO_CLAIM`."""
     if certification.evidence is None:
         contact = certification.refuted_in
         return NO_CLAIM if contact is None else f"{REFUTED_ASIDE.format(contact)} {NO_CLAIM}"
@@ -71,7 +71,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         ("Switching", linked(result.loaded, _switching(result), "switching")),
         ("Switches among", Linked(f"{count}, in {system.time} time", section=MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
-        # What is refuted although the verdict is inconclusive.
+        # Refuted in one kind of contact; the verdict on the whole loop is inconclusive.
         *(() if contact is None else (("Refuted", Linked(contact, section=MEANT)),)),
         (
             "Settled by",
@@ -93,7 +93,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
 def _switching(result: Result) -> str:
     """Say which switching signals the spec declares, in a few words."""
     system, spec = result.certification.system, result.loaded.spec
-    assert not isinstance(spec, RobotSpec)  # It has no modes, hence no certification.
+    assert not isinstance(spec, RobotSpec), "a robot spec has no modes to certify"
     words = str(spec.switching)
     if system.switching.resets:
         words += "; the state is reset at some switches"
@@ -167,7 +167,7 @@ _PROOF = {
 
 
 def summary_of(result: Result) -> tuple[str, str]:
-    """Return what was shown, and under which assumptions, in a sentence each."""
+    """Return two sentences: the conclusion, and its assumptions."""
     system, evidence = result.certification.system, result.certification.evidence
     register = register_of(result.certification.granted, result.loaded.spec)
     names = "; ".join(dict.fromkeys(item.kind.name for item in register))
@@ -188,7 +188,7 @@ def summary_of(result: Result) -> tuple[str, str]:
 
 
 def _proved(result: Result) -> str:
-    """Say what the terminal says of what is proved, and beside it what is not."""
+    """Return the sentence on the proved properties, with their limits."""
     certification, has_ranges = result.certification, result.loaded.spec.has_ranges
     system, evidence = certification.system, certification.evidence
     briefs = {s.shows: brief for s, brief in reversed(result.briefs)}
@@ -263,13 +263,13 @@ _DIGITS = 4
 
 
 def key_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
-    """Return labels and values for the head of the page, each on the safe side."""
+    """Return labels and conservatively rounded values for the head of the page."""
     design = (*_gains(result), *_achieved(analysis))
     return (*_worst(analysis), *_modes(result), *_force(result), *design)
 
 
 def _worst(analysis: DesignAnalysis | None) -> Iterator[tuple[str, str]]:
-    """Yield what is furthest beyond a limit, and how much else is doubtful."""
+    """Yield the worst exceeded limit, with the number of other warnings."""
     doubts = () if analysis is None else analysis.warnings
     if doubts and doubts[0].beyond:
         count_note = f" ({counted(len(doubts) - 1, 'more warning')})" if doubts[1:] else ""

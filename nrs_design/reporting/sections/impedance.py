@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
 T = TypeVar("T", bound=AbstractControllerAnalysis)
-# Of every axis the same.
+# These units hold for rotary and prismatic axes.
 _FREQUENCIES = ("Closed-loop poles [rad/s]", "Natural frequency [rad/s]")
 # More controllers than these make a table too wide for a page, or a figure too full.
 _COLUMNS = 4
@@ -56,7 +56,7 @@ _SUDDEN = (
 
 
 def _limit(value: float | None) -> str:
-    """Write a limit of stiffness, rounded down; nothing if there is none."""
+    """Return a stiffness limit as text, rounded down; an empty text for None."""
     if value is None:
         return ""
     if math.isnan(value):
@@ -176,7 +176,7 @@ _POINTS = 400
 
 @styled
 def _draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
-    """Draw the magnitude of the displayed impedance beside the desired one."""
+    """Draw the magnitudes of displayed and desired impedance."""
     figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):

@@ -28,7 +28,7 @@ def logic_section(spec: InteractionDesignSpec) -> Section | None:
 
 
 def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
-    """Say in sentences what the numbers of a mode logic mean, and what the proof makes of them."""
+    """Return sentences on the numbers of a mode logic, and on their role in the proof."""
     last = "The statement about stability is for the switching that this logic can give."
     if spec.switching.is_arbitrary:
         last = "The statement about stability needs none of this: switching is arbitrary."

@@ -21,7 +21,7 @@ def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
 
 
 def locate_mode(loaded: LoadedSpec, mode: str) -> KeyPath:
-    """Return where a spec says most of a mode: its matrix, or its controller."""
+    """Return the key path of a mode in its spec: of its matrix, or of its controller."""
     spec, first = loaded.spec, mode.split("/")[0]
     if isinstance(spec, SwitchedSystemSpec):
         names = [given.name for given in spec.modes]
@@ -32,7 +32,7 @@ def locate_mode(loaded: LoadedSpec, mode: str) -> KeyPath:
 
 
 def locate_contact(loaded: LoadedSpec, text: str) -> KeyPath:
-    """Return where a spec describes the contact that a text names, if it names one."""
+    """Return the key path of the contact that a text names; empty if it names none."""
     spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return ()
@@ -41,5 +41,5 @@ def locate_contact(loaded: LoadedSpec, text: str) -> KeyPath:
 
 
 def locate_assumption(kind: AssumptionKind) -> KeyPath:
-    """Return where a spec says what an assumption is about, if it does."""
+    """Return the key path of the subject of an assumption; empty without one."""
     return tuple(kind.about.split(".")) if kind.about else ()

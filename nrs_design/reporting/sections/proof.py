@@ -1,4 +1,4 @@
-"""The box of the report: what the verdict says, and what it does not say."""
+"""The box of the report: meaning and limits of the verdict."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _ILLUSTRATIONS = (
 
 
 def proof_section(result: Result) -> Section:
-    """Explain in plain words what the verdict means and what it leaves open."""
+    """Return the section on meaning and limits of the verdict."""
     certification = result.certification
     evidence = certification.evidence
     if evidence is None:

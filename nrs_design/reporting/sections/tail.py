@@ -34,7 +34,7 @@ _STANDINGS = (
 
 
 def assumptions_section(result: Result) -> Section:
-    """List what a statement about the matrices takes for granted, and how to test it."""
+    """Return the table of assumptions with their tests."""
     rows = tuple(
         (
             e.kind.name,
@@ -93,10 +93,10 @@ def recheck_section(result: Result) -> Section:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One thing that a certificate takes for granted."""
+    """One assumption of a certificate."""
 
     statement: str  # In words
-    kind: AssumptionKind  # What breaks if it is false, and how to test it
+    kind: AssumptionKind  # Consequence of a violation, and test
     bound: str  # Within what it must hold
     # Tested by records that the spec names, argued from how the product is made, or open.
     standing: Standing

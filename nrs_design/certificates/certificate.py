@@ -81,8 +81,8 @@ class Certificate(AbstractChecked):
     # Points of the ranges that the system covers; empty for all points. Growth at a point refutes
     # the spec; other statements at points do not concern the spec.
     points: str = ""
-    # Smallest and largest age of the force, in samples, where that is more than the spec declares,
-    # as its goal `delay` asks. What is proved there holds of the spec.
+    # Smallest and largest age of the force, in samples, if the goal `delay` requires a larger range
+    # than the declared range. A proof for the larger range holds for the spec.
     ages: tuple[int, int] | None = None
 
     @property

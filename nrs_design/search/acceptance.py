@@ -37,8 +37,8 @@ class Candidate(Generic[E]):
     words: str = "found"
 
 
-# Candidates, the best first. The generator returns the reason for an empty search, or None if the
-# result of the exact check is the reason.
+# Candidates, the best first. The generator returns the reason for a failure; None stands for the
+# reason of the exact check.
 Candidates = Generator[Candidate[E], None, str | None]
 Search = Callable[[Family], Candidates[AbstractEvidence]]
 

@@ -137,14 +137,14 @@ def mean_forms(maps: Array, sources: Indices, targets: Indices, count: int) -> A
 
 @dataclass(frozen=True)
 class StepGraph:
-    """Graph of steps: a node is a mode with a number of steps in it, an edge is one more step.
+    """Graph of steps: a node is a mode with a count of steps, an edge is a step.
 
     Edges are in the order of their sources.
     """
 
     names: tuple[str, ...]  # Names of the modes
-    # Of each edge: its nodes, the mode of its step, the reset before it (-1: the mode goes on), and
-    # the map of the state.
+    # Data of each edge: nodes, mode of the step, reset before the step (-1: no switch), and map of
+    # the state.
     sources: Indices
     targets: Indices
     modes: Indices
@@ -155,7 +155,7 @@ class StepGraph:
 
     @classmethod
     def of(cls, system: SwitchedSystem, matrices: Array) -> StepGraph | None:
-        """Return the graph of a system; None where it is none of single steps, or too large.
+        """Return the graph of a system; None for other kinds of systems and for large graphs.
 
         The modes may be scaled; they are those of the system itself if there are resets.
         """
@@ -207,7 +207,7 @@ class StepGraph:
     def of_clock(
         cls, clock: Clock, names: Sequence[str], matrices: Array, kinds: Sequence[int]
     ) -> StepGraph:
-        """Return the graph of an automaton: a node is one of its states."""
+        """Return the graph of an automaton, with a node for each state."""
         turns, own = clock.turns(), enumerate(kinds)
         rows = [(a, b, k) for (a, kind, b), (k, one) in product(turns, own) if one == kind]
         sources, targets, modes = np.array(rows, dtype=np.int64).T

@@ -30,8 +30,8 @@ Indices = NDArray[np.int64]
 # The name of a fact, and the node after the step if there are several that it is known of.
 Fact = tuple[str, int | None]
 
-# Samples of the length of a stay, for each time constant of its mode. The number of time constants
-# is limited to the range from SHORTEST to LONGEST.
+# Sampled lengths of a stay for each time constant of the mode. The number of time constants is
+# limited to the range from SHORTEST to LONGEST.
 SAMPLES, SHORTEST, LONGEST = 16, 1.0, 16.0
 
 
@@ -88,7 +88,7 @@ class Error:
 class Inequality:
     """The inequality of an edge, in the coordinates of its forms."""
 
-    before: int  # Which form, and which of its entries, that of the state before it is
+    before: int  # Index of the form before the step, and entries of the form
     kept: Indices
     after: int
     left: Indices

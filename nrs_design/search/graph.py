@@ -61,7 +61,7 @@ class Graph:
     vectors: ComplexArray
     inverses: ComplexArray
     jumps: tuple[Jump, ...]  # All that are allowed at one value of a constant parameter
-    # shortest, longest: shape (m,). Bounds of the time in each mode; infinite where there is none.
+    # shortest, longest: shape (m,). Bounds of the time in each mode; infinite without a bound.
     shortest: Array
     longest: Array
     times: tuple[Array, ...]  # Admissible times in each mode, in order
@@ -232,7 +232,7 @@ def _best_pair(graph: Graph, cycle: Cycle) -> Array:
 
 
 def _best_times(graph: Graph, cycle: Cycle) -> Array:
-    """Start where all times are equally long, and change one after the other."""
+    """Start from equal times, and optimize the times one by one."""
     grids = [graph.times[mode] for mode in graph.modes(cycle)]
     count = max(map(len, grids))
     starts = np.array([[grid[min(k, len(grid) - 1)] for grid in grids] for k in range(count)])

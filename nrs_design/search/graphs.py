@@ -60,8 +60,8 @@ KEPT = 0.99
 MOST_ROUNDED = 250
 # Largest number of stays of a stable mode that have an edge each.
 FEW_STAYS = 64
-# Rules for misses with more states first have fewer forms; then a miss so many steps ago is long
-# ago.
+# Rules for misses with more states start with shared forms; after LONG_AGO steps, the time of the
+# last miss is ignored.
 FEW_STATES, LONG_AGO = 12, 2
 # Share of the remaining budget for words that limit the rate.
 WORDS = 0.1

@@ -24,13 +24,13 @@ Array = NDArray[np.float64]
 MAX_STEPS = 60
 # Share of the way to the border of the cones that a step goes.
 STEP_SHARE = 0.95
-# The last unknown is found to this share of itself; if no point is known with a positive one, it is
-# nil where its bound is below the second number, or below the third and no step is left.
+# Relative accuracy of the last unknown. Without a positive value, the last unknown is zero if
+# the dual bound is at most NIL, or below NEARLY_NIL at the end of the iteration.
 ACCURACY, NIL, NEARLY_NIL = 0.5, 1e-11, 1e-8
 # The equations of the optimum hold nearly enough for its bound to be believed.
 NEARLY_DUAL = 1e-6
-# It is not begun if fewer steps than these fit. The start lies below the margin of its unknowns by
-# at least this, or by so many of the margins of what was found for other numbers.
+# Fewest steps that the budget must allow. The start is below the margin of the first unknowns by
+# at least START_FLOOR, or, if smaller, by WARM times the initial last unknown.
 FEWEST_STEPS, START_FLOOR, WARM = 4, 1e-3, 100.0
 # Work per step, per group of blocks and per multiplication; bytes per entry.
 PER_STEP, PER_GROUP, PER_PRODUCT, BYTES_PER_ENTRY = 2e-4, 3e-4, 1e-10, 32

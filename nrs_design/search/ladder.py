@@ -23,7 +23,7 @@ from nrs_design.search.work import Allowance, Cost
 
 # Work of a degree of what is tried before the cheaper rungs.
 QUICK = 0.5
-# Degrees that are tried before the rungs below, which are quicker than higher ones.
+# Degrees before the rungs below; these rungs are quicker than higher degrees.
 FIRST_DEGREES = 2
 
 Step = tuple[str, Search]
@@ -219,7 +219,8 @@ OBSTRUCTION, GRADIENT = (
     _load_lazily("gradient.search_by_gradient"),
 )
 CONSTANT_VALUES = _load_lazily("unstable_value.search_switching_at_values")
-# Cheapest first. A rung that rises is tried here with its first degrees, with higher ones at last.
+# Cheapest first. A rung with rising degrees starts here with the first degrees; higher degrees
+# follow after the last rung.
 LADDER: tuple[Rung, ...] = (
     Rung(
         "quadratic for each controller",

@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 # Bisections of an end; refuted ends are slow, as no verdict is found next to them.
 STEPS, PERIOD_STEPS, DWELL_STEPS, REFUTED_STEPS = 8, 4, 12, 6
-# Ranges are stretched by up to this, without a proof no more than so often; periods are doubled or
-# halved so often.
+# Largest scale of ranges, number of larger scales without a proof, and number of doublings and of
+# halvings of a period.
 LARGEST_SCALE, IDLE, DOUBLINGS = 64, 3, 4
 # An exact test of a mode with more samples on their way takes too long.
 FARTHEST_DELAY = 32
-# Halvings of a dwell time, where ever shorter ones are proved but zero is not.
+# Largest number of halvings of a dwell time.
 HALVINGS = 64
 
 Assemble = Callable[[Fraction], SwitchedSystem]
@@ -47,7 +47,7 @@ class Bracket:
     proved: Fraction | None
     refuted: Fraction | None
     end: str = ""  # End of a search without refutation, and the reason
-    # In which contact alone it is refuted, where its loss must be covered; empty for any.
+    # Contact of the refutation, if the loss of contact is undecided; empty for any contact.
     refuted_in: str = ""
     proof: Certification | None = None  # At the number that is proved
 
@@ -57,8 +57,8 @@ class CommandMargin:
     """Disturbances with a proof of the force limit, and disturbances that exceed the limit."""
 
     limit: Fraction  # Force limit in N m
-    # By disturbance: kept up to the first number, in the proportion in which the spec declares
-    # them; broken by a simulated run at the second one; with the unit.
+    # For each disturbance: proved size, size with a simulated violation, and unit. The disturbances
+    # are scaled together, in the proportion of the spec.
     bounds: Mapping[str, tuple[Fraction, Fraction, str]]
 
 

@@ -102,7 +102,7 @@ def plain_steps(
 
 @dataclass(frozen=True)
 class Constraint:
-    """What is asked beside the steps: ``constant + sum Q_k form_k + sum m F + level corner >= 0``.
+    """Further constraint: ``constant + sum Q_k form_k + sum m F + level corner >= 0``.
 
     Without a corner, neither the level nor what is left to spare is in it.
     """

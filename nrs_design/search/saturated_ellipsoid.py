@@ -76,7 +76,7 @@ class SaturatingLoop:
     columns: Array  # Shape (k, s, n). What every signal does.
     rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
     starts: Array  # Shape (c, n). States at the size one.
-    # Which rows h a mode has, of those that modes share: always the first in continuous time.
+    # Group of rows h of each mode; in continuous time, all modes are in group 0.
     groups: tuple[int, ...]
     allowance: Allowance
 
@@ -319,7 +319,7 @@ class _Search:
         return program.solve(share, bounds, self.loop.allowance, level)
 
     def largest(self, region: Region, rate: float) -> _RoundedRows | None:
-        """Return the rows with the largest start for them, rounded as it is."""
+        """Return rounded rows, with the size of the largest start for these rows."""
         slower = self.rate(RATES[0] * position_of(rate, self.limit, self.loop.time))
         shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
         T = np.asarray(self.T @ round_coordinates(shape))

@@ -18,9 +18,8 @@ from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
-# Work per program, per cone of it and per entry of its constraints; and in each step of the solver,
-# per entry of the blocks that cones add to its equations, and per multiplication in their
-# factorization.
+# Work per program, per cone and per entry of the constraints. Work in each step of the solver: per
+# step, per entry of the blocks of cones, and per multiplication of the factorization.
 PER_PROGRAM = 1e-3
 PER_CONE = 5e-5
 PER_ENTRY = 5e-8
@@ -127,7 +126,7 @@ class SemidefiniteProgram:
         self._blocks = list[Block]()
 
     def add(self, constant: Array, images: Sequence[tuple[int, Array]]) -> None:
-        """Add a block: its constant, and packed forms of unknowns as columns, from a first one."""
+        """Add a block: a constant, and packed forms with the index of the first unknown."""
         places = [range(first, first + image.shape[1]) for first, image in images]
         # NumPy's own union loads what takes longer than a common quadratic function.
         unknowns = np.array(sorted({k for place in places for k in place}))

@@ -38,8 +38,8 @@ PER_MATRIX = 5e-6
 PER_PRODUCT = 3e-8
 # What rounding hides, relative to the size of the matrices.
 SLACK = 1e-9
-# Shares at which switching is looked at: the ends have no mixture rung of their own. Of several
-# parameters, all together or each at its own.
+# Shares at which switching is examined, with the ends: no mixture rung covers the ends. One or two
+# parameters are varied independently, more parameters together.
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
 # Averages of modes: shares of two, number of pairs, and number of others.
 PAIR_SHARES, MAX_PAIRS, RANDOM_MIXTURES = 128, 300, 2000

@@ -6,7 +6,8 @@ import numpy as np
 
 from nrs_design.identification.numeric import Array, Flags, usual_step
 
-# Changes of a rounded signal are multiples of its step: largest deviation, and least share of them.
+# Changes of a rounded signal are multiples of the rounding step: largest relative deviation from a
+# multiple, and least fraction of multiples.
 _WHOLE = 0.06
 _LEAST_SHARE = 0.9
 # Size of a small change in steps, and least share of small changes.
@@ -14,7 +15,7 @@ _SMALL = 10.5
 _SHARE = 0.1
 # Changes that stand out between two equal ones: least number, and least share of all changes.
 _FEWEST_BLIPS, _BLIPS = 2, 0.05
-# Steps that are tried: a reading may be rounded twice, by its sensor and by the digits of its file.
+# Number of candidate steps: both the sensor and the digits of the file round a reading.
 _CANDIDATES = 50
 
 

@@ -21,9 +21,9 @@ _SENTENCE = 40
 class Merged(NamedTuple):
     """A spec with a result in it."""
 
-    text: str  # Of the spec
-    doubts: tuple[str, ...]  # What speaks against a proof that rests on the result
-    accepted: bool  # Whether the spec says why it is used all the same
+    text: str  # Text of the spec
+    doubts: tuple[str, ...]  # Reasons to doubt a proof with the result
+    accepted: bool  # Whether the spec has accept_doubt
 
     @property
     def fails_gate(self) -> bool:
@@ -86,7 +86,7 @@ class SpecDocument:
 
 
 def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return what a new text of a spec changes, and what it has no longer, a line each."""
+    """Return changed and removed fields of a new spec text, one line for each field."""
     old, new = (
         {row.name: row.written for row in describe(spec)}
         for spec in (loaded.spec, parse_spec(text))
@@ -108,7 +108,7 @@ def _dump(root: Node) -> str:
 
 
 def convert_data(data: Data) -> Any:
-    """Return what a document says as lists and dictionaries; whole numbers need no quotes."""
+    """Convert a document to lists and dictionaries, and texts of digits to integers."""
     if isinstance(data, str):
         return int(data) if data.isdecimal() else data
     if isinstance(data, tuple):
@@ -133,5 +133,5 @@ def _flow(value: object) -> object:
 
 
 def _comments(text: str) -> Sequence[str]:
-    """Return every comment, also behind a value; what looks like one in a text is kept as well."""
+    """Return all comments of a YAML text; a quoted ``#`` after a blank counts as a comment."""
     return [found.group().strip() for found in _COMMENT.finditer(text)]

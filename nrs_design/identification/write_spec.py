@@ -36,8 +36,8 @@ from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sampling import LONGEST_DELAY
 
 _DIGITS = 6
-# Fewer records do not show how specimens vary. A range that is narrower than the declared one by
-# the second factor is unlikely to cover the specimens that the declared one was for.
+# Least number of records for the variation of specimens. A range that is narrower than the declared
+# range by the second factor probably misses specimens.
 FEW_RECORDS, MUCH_NARROWER = 3, 10
 NARROWER = "narrower than the declared one"
 # Ends are rounded outwards.

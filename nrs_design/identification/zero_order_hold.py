@@ -117,5 +117,5 @@ def _decay(time_constant: complex, steps: Array) -> Any:
 
 
 def _real(time_constant: complex) -> complex:
-    """Return a real number where it is one, so that arrays stay real."""
+    """Return a float for a real time constant, so that arrays stay real."""
     return time_constant if np.imag(time_constant) else float(np.real(time_constant))

@@ -163,7 +163,7 @@ def close_axis(law: AdmittanceLaw, axis: Axis, context: ControllerContext) -> Sw
         time=Time.DISCRETE,
         states=frame.states,
         modes=modes,
-        assumptions=(),  # Said beside the verdict, see `assumptions`.
+        assumptions=(),  # See `assumptions`.
         contact=free,
         sample_time=context.period,
     )
@@ -185,14 +185,14 @@ def assumptions(context: ControllerContext) -> tuple[str, ...]:
         ends = " to ".join(f"{float(1000 * lag):g}" for lag in context.lag)
         tracking = f"the robot follows its command with a lag of first order, {ends} ms"
     return (
-        "what is touched is a spring without damping, whose stiffness lies in the range at every "
-        "period and may change from one to the next; a range from 0 also covers contact that is "
-        "lost and made at the reference",
+        "the environment is a spring without damping; its stiffness lies in the range at every "
+        "period and may change from period to period; a range from 0 also covers loss and return "
+        "of contact at the reference",
         f"the period is always the same; measured offset and force are {age} old",
         tracking,
-        "each axis acts by itself: the control frame is aligned with the base (it may be turned "
-        "where masses are equal, and in all cases since ros2_controllers 6.4.0), the Jacobian is "
-        "square and regular and does not change, and its damped inverse (alpha) is its inverse",
+        "the axes are decoupled: the control frame is aligned with the base (a rotated control "
+        "frame is covered for equal masses, and always since ros2_controllers 6.4.0), the Jacobian "
+        "is square, regular and constant, and the damped inverse (alpha) equals the exact inverse",
         "the measured force is that of the contact: nothing scales or filters it before this "
         "controller",
         "the parameters are those of this file, and are not changed while the controller runs",

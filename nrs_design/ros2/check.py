@@ -167,7 +167,7 @@ def _read(
 
 
 def _find_shared(node: RosNode, nodes: Iterable[RosNode], names: Collection[str]) -> list[Fault]:
-    """Return a fault for each of some parameters that another node may set, too."""
+    """Return a fault for each parameter that a second node may also set."""
     return [
         other.fault(
             name,

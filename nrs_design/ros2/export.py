@@ -41,7 +41,7 @@ REQUIRED_PARAMETERS = (
 
 @dataclass(frozen=True, slots=True)
 class RosExport:
-    """One controller with its verdict, and as a parameter file if the verdict is a proof."""
+    """Verdict on a controller; with a proof, also the parameter file."""
 
     controller: str  # Its name in the spec
     verdict: str  # Under the law that ROS 2 computes with these parameters
@@ -226,7 +226,7 @@ def _header(name: str, spec: str, sampling: SamplingSpec, notes: Sequence[str]) 
 def _proof_lines(
     axis: str, designed: Designed, k: Range, certificate: Certificate
 ) -> Iterator[str]:
-    """Yield the proof of one axis in words."""
+    """Yield lines that describe the proof of an axis."""
     evidence, spec = certificate.evidence, designed.spec
     assert evidence is not None, "proved by something"
     unit = spec.axis.unit

@@ -104,7 +104,7 @@ class AdmittanceLaw:
     joint_damping: Fraction  # In 1/s
     filter_coefficient: Fraction  # Share of the new sample in the smoothed force, in each period
     values: Mapping[str, tuple[Fraction, ...]]  # Everything that was read, defaults filled in
-    # Another controller that the force comes through, and that may filter or scale the force.
+    # Controller that passes the force on, and may filter or scale the force.
     force_source: str | None = None
 
 

@@ -15,7 +15,7 @@ from nrs_design.spec.document import Node, Position, Scalar, Sequence, parse_doc
 from nrs_design.spec.exact import parse_exact
 
 KEY = "ros__parameters"
-# How rcl_yaml_param_parser tells the type of a text: a truth value, an integer, else a number.
+# Types of a text in rcl_yaml_param_parser: truth value, integer, else floating-point number.
 _TRUE = frozenset({"Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"})
 _FALSE = frozenset({"N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"})
 _INTEGER = re.compile(r"[+-]?[0-9]+")
@@ -69,7 +69,7 @@ class RosNode:
 
 
 def _means(pattern: str, name: str) -> bool:
-    """Tell whether a pattern matches a node; ``**`` is any number of parts, ``*`` is one."""
+    """Tell whether a pattern matches a name; ``**`` matches any parts, ``*`` a single part."""
     parts = pattern.strip("/").split("/")
     patterns = (
         "(/[^/]+)*" if part == "**" else "/[^/]+" if "*" in part else f"/{re.escape(part)}"

@@ -31,9 +31,9 @@ def _settings(law: AdmittanceLaw) -> Iterator[Trap]:
         yield (
             "admittance.mass",
             None,
-            "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
-            "frame, as stiffness and damping do; before, along those of the base, so axes are "
-            "coupled wherever the two frames are turned, which no verdict here covers",
+            "masses differ: since ros2_controllers 6.4.0, masses act along the axes of the control "
+            "frame, like stiffness and damping; in older releases, masses act along the axes of "
+            "the base, and a rotated control frame couples the axes: no verdict covers that",
         )
     if law.values[RETUNING][0]:
         state = "is on" if RETUNING in law.node.values else "is on by default"

@@ -42,9 +42,9 @@ Printed = str | tuple[str, ...]
 
 # Digits that a recomputed value shows, unless the print has more.
 DIGITS = 6
-# The precision that a print is read with: a number is reproduced if it is this near, relative to
-# it, or nearer than one unit of its last printed digit. How far our own value may be from the
-# reference that this package has on record is another thing: the `Tolerance` of each row.
+# Precision of a print: a value reproduces a number within this relative difference, or within a
+# unit of the last printed digit. The `Tolerance` of a row limits the difference between value and
+# reference.
 STANDARD = 1e-3
 BECAUSE = "Not reproducible, because"
 
@@ -69,17 +69,15 @@ class ReproducedValue:
     printed: str  # As printed
     value: str | None  # As recomputed; None where nothing can be computed
     unit: str  # Of both
-    # Difference between value and print over the print (the difference itself where the print is
-    # zero), the largest one of several numbers; None where the print is not a number.
+    # Largest relative difference between value and print (absolute for a print of zero); None for a
+    # comparison without numbers.
     deviation: float | None
     # ``drift``: the package no longer computes the value on record.
     verdict: PrintVerdict
     note: str  # What is right, and why; or why nothing can be recomputed
-    # How near to the print a value must be to reproduce it, number by number: a part of the print,
-    # or a unit of its last digit; empty where words are compared.
+    # Required precision of each number: a percentage, or a unit of the last digit; empty for texts.
     precision: str = ""
-    # As `deviation`, but from the reference that this package has on record for its own value,
-    # which is the print where nothing else is.
+    # Like `deviation`, from the reference on record; without a reference, from the print.
     drift: float | None = None
     limit: str = ""  # The largest such difference that is no drift
     # Constants that were fitted to prints and that the value rests on, with their numbers.
@@ -119,7 +117,7 @@ class PrintedRow:
     section: str
     printed: Printed = ""
     unit: str = ""
-    value: str | None = None  # Correct statement in words; numbers are computed
+    value: str | None = None  # Correct statement as text; numbers are computed
     right: Printed = ""  # Reference, if different from the print
     # Largest deviation from the reference that is no drift, relative or absolute.
     relative: float = 0.0
@@ -140,7 +138,7 @@ class PrintedRow:
 class Recomputed:
     """What is computed for a row."""
 
-    value: Value | str | None = None  # Words or numbers; None for the words of the row
+    value: Value | str | None = None  # Text or numbers; None for the text of the row
     is_confirmed: bool = True  # Whether the computation confirms the record
     facts: tuple[object, ...] = ()  # Values for the braces in note and `because`
 

@@ -165,7 +165,7 @@ def _gradient() -> bool:
     x = np.linalg.eigh(A.T @ Q + Q @ A + np.eye(4))[1][:, -1]
     printed = A @ np.outer(x, x) + np.outer(x, x) @ A.T
     unit = np.eye(4)
-    # All symmetric changes of two entries, or of one on the diagonal.
+    # Symmetric unit changes of two opposite entries, or of a diagonal entry.
     changes = [np.maximum(e := np.outer(a, b), e.T) for a in unit for b in unit]
     slopes = [(v(Q + 1e-6 * change) - v(Q - 1e-6 * change)) / 2e-6 for change in changes]
     return bool(np.allclose(slopes, [(printed * change).sum() for change in changes], atol=1e-3))

@@ -153,7 +153,7 @@ def _peak_and_error(force: str, extra: str = "") -> tuple[float, float]:
     force_phase = run.response.t >= begin
     t, torque = run.response.t[force_phase], run.response["torque"][force_phase]
     peak = thesis.TORQUE * (1 + metrics.overshoot(torque, thesis.TORQUE))
-    # The rest of a decay, and rounding, are no steady error.
+    # Rounding removes the remainder of a decay from the steady error.
     return peak, round(100 * metrics.steady_state_error(t, torque, thesis.TORQUE), 6)
 
 
@@ -180,7 +180,7 @@ def _tissue_and_tool() -> Recomputed:
 WAY = math.radians(15)
 HAND = float(Fraction(1002) * Fraction("0.24") ** 2)
 _STEP = 1e-3
-# Experiments that are compared, by index, and what is printed of speed and applied torque, in %.
+# Pairs of compared experiments by index; printed changes of speed and of applied torque in %.
 PAIRS = ((0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5))
 SPEEDS = (-6, -5, -2, -2, -35, -33, -30)
 TORQUES = (4, 7, 1, 0, 97, 92, 79)

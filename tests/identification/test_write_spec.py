@@ -215,7 +215,7 @@ def test_a_dead_time_is_a_doubt_where_no_proof_delays_the_motion_loop(late, tmp_
     assert written.actuator.dead_time is None
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
-    assert "counted from the row that first holds a command" in doubt
+    assert "counted from the row in which a command first appears" in doubt
 
 
 @pytest.mark.slow

@@ -31,7 +31,7 @@ def test_the_frame_of_masses_depends_on_the_release(tmp_path):
     """ros2_controllers 6.4.0 (pull request 1139): along the control frame; before, the base."""
     masses = ("mass: [5.0, ", "mass: [6.0, ")
     (found,) = traps(changed(tmp_path, masses))
-    assert "since ros2_controllers 6.4.0 they act along the axes of the control frame" in (
+    assert "since ros2_controllers 6.4.0, masses act along the axes of the control frame" in (
         found.message
     )
     assert "before, along those of the base" in found.message

@@ -31,14 +31,15 @@ _ALIKE = 1e-3
 _CLEAR = 4.0
 # Ratio of squared errors to the least ones that is nearly as good.
 _NEARLY = 4.0
-# From this number of records on, the covariance comes from their spread; below, from parts of them.
+# Least number of records whose scatter gives the covariance; fewer records are divided into
+# batches.
 MANY_RECORDS = 5
 # Index of the friction among the parameters.
 _FRICTION = 2
 # A log does not say when within a sample a command began.
 DEAD_TIME_NOTE = (
-    "counted from the row that first holds a command; one that began before it, by up to a sample, "
-    "is later by as much"
+    "counted from the row in which a command first appears; the true dead time is up to a sample "
+    "longer"
 )
 
 

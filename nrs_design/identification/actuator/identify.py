@@ -32,7 +32,7 @@ UNDETERMINED = (
 
 # First guess of a friction that a scan does not see, as a part of the largest command.
 _GUESS = 0.05
-# Largest part of the output that a fit may miss in errors that are not white.
+# Largest relative error of a fit with colored residuals that raises no doubt.
 _MISSED = 0.01
 # Relative standard error beyond which a parameter is undetermined.
 _UNSURE = 0.5
@@ -85,8 +85,8 @@ class ActuatorIdentification(AbstractIdentification[SignalRecord]):
         wide = self.clear_dead_time.outward(3)
         return (
             *self.doubts,
-            f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({DEAD_TIME_NOTE}), "
-            "which the proof leaves out: it acts on the motion loop, so that it is no part of "
+            f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({DEAD_TIME_NOTE}). "
+            "The proof leaves out this dead time of the motion loop, which is not part of "
             "sampling.delay (the age of the force sample)",
         )
 
@@ -150,8 +150,8 @@ def find_doubts(records: Sequence[SignalRecord], fit: ActuatorFit) -> Iterator[s
         )
     if motor.friction is None and not tells_friction(records, motor.time_constant, motor.delay):
         yield (
-            "the command has one level only: friction cannot be told from a smaller gain, and the "
-            "gain is that of this level"
+            "the command has one level only: friction and a smaller gain are indistinguishable, "
+            "and the gain holds for this level"
         )
     names = ["gain", "time constant"] + ["friction"] * (motor.friction is not None)
     for name, error in zip(names, fit.uncertainty.errors.tolist(), strict=False):

@@ -12,7 +12,8 @@ from nrs_design.identification.datasets.records import SignalRecord
 from nrs_design.identification.numeric import Array, reject
 from nrs_design.identification.zero_order_hold import HeldCommand, Lags
 
-# Difference in a logarithm; that of the dead time, in samples, is larger by this factor.
+# Step of a difference quotient in a logarithm. The step of the dead time, in samples, is larger by
+# this factor.
 _DIFFERENCE = 1e-5
 _DELAY_DIFFERENCE = 100.0
 # A record begins in motion at this part of the velocity that the largest command leads to.

@@ -46,7 +46,7 @@ class Destinations:
             spec = read_spec(write)
             if file_of(write) != write:
                 raise SpecError(
-                    "the file holds several axes, and nothing is merged into one of them",
+                    "the file holds several axes, and --write merges into specs of one axis only",
                     path=write,
                     remedy="identify without --write, and copy what is found",
                 )

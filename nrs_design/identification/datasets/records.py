@@ -204,7 +204,7 @@ def check_time(table: MeasurementTable, time: Array) -> tuple[slice, str]:
     times = span(time[rows.start] - time[0], time[rows.stop - 1] - time[0], "s")
     return rows, (
         f"{counted(pauses, 'pause')} in the record: its longest stretch is used ({times}), and "
-        f"{left} left out; a stretch that is saved as a file is a record, too"
+        f"{left} left out; to use other stretches, save each as a file"
     )
 
 
@@ -233,7 +233,7 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
 
 
 def check_turns(table: MeasurementTable, angle: Array) -> None:
-    """Check that an angle does not jump by a whole turn, as a reading modulo 360 deg does."""
+    """Check that an angle has no jumps of 2 pi, as readings modulo 360 deg have."""
     steps = np.abs(np.diff(angle))
     jumps = np.flatnonzero(np.abs(steps - 2 * np.pi) < np.pi / 4)
     if len(jumps) and float(np.median(steps)) < np.pi / 4:

@@ -15,7 +15,7 @@ from nrs_design.identification.numeric import Array, Rows, bic, column_sizes, re
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 from nrs_design.identification.zero_order_hold import HeldCommand, Lags
 
-# Half width, in samples, of the search for a whole number of them about the peak of correlation.
+# Half width of the search about the peak of the correlation, in samples.
 _COPY_RANGE = 8
 _DIFFERENCE = 1e-4
 # Errors of this part of the power are rounding.
@@ -158,7 +158,7 @@ def fit_delay(
 
 
 def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
-    """Find the whole number of samples by which a copy is late, near a delay in s."""
+    """Fit a delayed copy with an integer number of samples, near a delay in s."""
     follower, start = HeldCopy(), round(delay / record.step)
 
     def key(samples: int) -> tuple[float, int]:

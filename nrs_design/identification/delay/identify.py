@@ -42,9 +42,9 @@ from nrs_design.identification.zero_order_hold import Lags
 
 # Longest delay in the search, as a part of the record.
 _LONGEST = 0.1
-# Accuracy of a search for a delay beside a lag, in samples.
+# Accuracy of a search for a delay and a lag, in samples.
 _OFF = 2e-3
-# Distance from a whole number that is rounding of a fit without noise.
+# Largest distance from an integer that counts as rounding, in periods.
 _NEARLY_WHOLE = Fraction(1, 10**6)
 _PARTS = 10
 _PART_STEPS = 6
@@ -56,14 +56,14 @@ _PART_SHIFT = 0.05
 _NOTABLE = 0.1
 # Below this correlation the columns are unrelated.
 _RELATED = 0.2
-# Parts of the motion that a model misses in errors that are not white: the first is a doubt, beyond
-# the second no interval made for noise holds.
+# Relative errors of a model with colored residuals. The first raises a doubt; above the second,
+# intervals for white noise do not hold.
 _MISSED = 0.02
 _UNEXPLAINED = 0.1
-# A command with less of its power outside one frequency shows one phase only.
+# Least fraction of the power outside one frequency: below, delay and lag are indistinguishable.
 _MULTITONE_POWER = 0.01
-# A command is smooth between its samples if a spline through every other sample misses those
-# between by less than this part of the change from sample to sample.
+# Largest error of a spline through every other sample of a smooth command, relative to the change
+# from sample to sample.
 _SMOOTH = 0.05
 # Half width in samples of the search for the delay of a part of the record.
 _PART_RANGE = 50
@@ -92,7 +92,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
 
     @property
     def smooth(self) -> bool:
-        """Whether the command is smooth between samples, so that a copy tells parts of them.
+        """Whether the command is smooth between samples: fractions of a sample are identifiable.
 
         Otherwise, or beside a lag, nobody knows when within a sample a logged command began: the
         interval is a sample wide, at least.
@@ -136,7 +136,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
 
     @cached_property
     def one_frequency(self) -> bool:
-        """Whether the command has one frequency, which shows one phase only."""
+        """Whether the command is a sinusoid of one frequency."""
         return _part_of_other_frequencies(self.record) < _MULTITONE_POWER
 
     @cached_property
@@ -156,7 +156,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
         return low, high
 
     def periods(self, period: Fraction) -> tuple[int, int]:
-        """Return `delay_range` in whole periods of a length in s, rounded outward."""
+        """Return `delay_range` in periods, rounded outward to integers; the period is in s."""
         low, high = (end / period for end in self.delay_range)
         return math.floor(low + _NEARLY_WHOLE), math.ceil(high - _NEARLY_WHOLE)
 
@@ -177,11 +177,11 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
         length = float(np.ptp(self.record.time))
         if self.delay.high - self.delay.low <= length:
             return None
-        return f"not told by this record: its interval is longer than the {length:.3g} s"
+        return f"not determined by this record: the interval exceeds its length of {length:.3g} s"
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What the interval rests on, in words."""
+        """Pauses, and the time resolution of the record, as sentences."""
         command = self.record.names[0]
         rests = (
             f"the record does not tell when within a sample {command} changed: no interval is "
@@ -198,7 +198,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """Doubts, what pauses leave out, and dynamics beside which a delay is more than an age."""
+        """Doubts, pauses, and dynamics between the columns, as sentences."""
         texts = (*self.doubts, self.record.pauses) if self.record.pauses else self.doubts
         if not isinstance(self.fit.follower, Lagged):
             return texts
@@ -208,7 +208,7 @@ class DelayIdentification(AbstractIdentification[SignalRecord]):
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:
-    """Find the delay by cross-correlation, then by a fit beside the dynamics.
+    """Find the delay by cross-correlation, then by a fit of delay and dynamics.
 
     Columns without relation, or a delay that explains little, are a `DataError`.
     """
@@ -228,8 +228,8 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     lagged = (fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
     # A search may leave the delays of its range.
     fits = (copy, *(fit for fit in lagged if abs(fit.delay) <= _longest(record)))
-    # A fast second lag and a delay are nearly alike: chance alone would choose it now and then, and
-    # its interval for the delay would not hold. So the simplest is chosen.
+    # The simplest good model avoids a spurious fast lag, which resembles a delay and makes its
+    # interval too narrow.
     lowest = min(fit.bic for fit in fits)
     good = [fit for fit in fits if fit.bic <= lowest + _CLEARLY]
     best = min(good, key=lambda fit: (len(fit.follower.shape), fit.bic))
@@ -255,9 +255,8 @@ def _check_explained(result: DelayIdentification) -> None:
         f"no delay, with or without a lag, explains {record.names[1]} by {record.names[0]}: the "
         f"best misses {100 * fit.missed_part:.2g} % of the motion, in errors that are not noise",
         path=record.source.path,
-        remedy=f"delays up to {_longest(record):.3g} s are looked for, a tenth of the record: make "
-        "it ten times as long as the delay may be; or a stretch of it in which the delay does not "
-        "vary",
+        remedy=f"delays up to {_longest(record):.3g} s are tried, a tenth of the record: record "
+        "ten times the longest delay, or a stretch with a constant delay",
     )
 
 
@@ -295,7 +294,7 @@ def _fitted_rows(record: SignalRecord, lag: float) -> Rows:
 
 
 def _hidden(fit: DelayFit) -> float:
-    """Return by how much longer a delay may be, in samples, than a fit to logged commands says.
+    """Return the largest delay that a log of commands hides, in samples.
 
     A command is logged up to a sample after it began. Only a copy of one that is smooth in between
     does not ask when that was.
@@ -304,7 +303,7 @@ def _hidden(fit: DelayFit) -> float:
 
 
 def _held_interval(fit: DelayFit, rows: Rows, confidence: float) -> Estimate:
-    """Return the best whole number of samples, and all lags that the rows do not reject.
+    """Return the best delay in integer samples, with the interval of all delays that fit the rows.
 
     That a copy is k samples late says of its delay that it is between k - 1 and k + 1: the command
     began up to a sample before it was logged, and its copy, too.
@@ -392,7 +391,7 @@ def _starts(
 
 
 def _parts(fit: DelayFit) -> Iterator[tuple[float, Estimate]]:
-    """Yield the delay in parts of the record, beside the dynamics of the whole."""
+    """Yield the delay in parts of the record, with the dynamics of the full record."""
     edges = np.arange(_PARTS + 1) * len(fit.rows) // _PARTS
     noise = float(fit.errors @ fit.errors) / max(len(fit.errors) - len(fit.follower.shape) - 3, 1)
     total = float(fit.sensitivity @ fit.sensitivity)
@@ -413,7 +412,7 @@ def _parts(fit: DelayFit) -> Iterator[tuple[float, Estimate]]:
 
 
 def _own_delay(fit: DelayFit, rows: Rows) -> tuple[float, float]:
-    """Return the delay in samples that fits some rows best, and how much they tell about it."""
+    """Return the least-squares delay of some rows in samples, and its squared sensitivity."""
     delay, power = fit.samples, 0.0
     for _ in range(_PART_STEPS):
         later_output, early = (fit.output(delay + d)[rows] for d in (_PART_SHIFT, -_PART_SHIFT))
@@ -427,7 +426,7 @@ def _own_delay(fit: DelayFit, rows: Rows) -> tuple[float, float]:
 
 
 def _part_of_other_frequencies(record: SignalRecord) -> float:
-    """Return which part of the command's power no swing of one frequency explains."""
+    """Return the fraction of the command's power outside its best-fitting sinusoid."""
     from scipy.optimize import minimize_scalar
 
     time, command = record.time, record.command - record.command.mean()
@@ -453,8 +452,8 @@ def _rivals(result: DelayIdentification) -> Iterator[str]:
     """Yield models that explain the record nearly as well with quite another delay."""
     if result.one_frequency:
         yield (
-            f"{result.record.names[0]} has one frequency: a delay and a lag cannot be told apart; "
-            "record a motion of several frequencies"
+            f"{result.record.names[0]} has one frequency, which cannot separate a delay from a "
+            "lag; record a motion of several frequencies"
         )
         return
     half = (result.interval.high - result.interval.low) / 2

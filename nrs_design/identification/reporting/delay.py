@@ -55,7 +55,7 @@ def _table(result: DelayIdentification) -> Table:
         )
         for fit in result.fits
     )
-    return Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)
+    return Table("Delay with each model", ("Model", "Samples", "BIC - least"), rows)
 
 
 def _facts(result: DelayIdentification) -> Facts:

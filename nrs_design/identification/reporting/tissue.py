@@ -97,7 +97,7 @@ def _notes(result: TissueIdentification, arm: float | None) -> Iterator[str]:
 
 
 def _record_texts(result: TissueIdentification) -> tuple[str, ...]:
-    """Return the used samples and the offsets of each record, in words."""
+    """Return a line about samples and offsets for each record."""
     return tuple(
         "; ".join(
             (

@@ -46,7 +46,7 @@ class Curve:
     """A measured and a fitted output over time."""
 
     title: str  # Name of the record
-    note: str  # What the fit is
+    note: str  # Caption of the fit
     label: str  # Quantity and unit of the output
     # time, measured, fitted: shape (n,), time in s.
     time: Array
@@ -71,7 +71,7 @@ class FindingView:
     curves: Callable[[], Iterable[Curve]]
     details: Sequence[str] = ()  # Further lines, of a terminal with ``-v``
     fits: Table | None = None  # All fits, where there are several
-    blocks: Sequence[Block] = ()  # What a page has besides
+    blocks: Sequence[Block] = ()  # Further blocks of the page
 
     @property
     def document(self) -> Facts:
@@ -91,7 +91,7 @@ class FindingView:
         result, sources = self.result, self.result.sources
         synthetic = sum(source.synthetic for source in sources)
         kind = "SYNTHETIC" if synthetic == len(sources) else "mixed" if synthetic else "measured"
-        # What must stand before anything that comes of synthetic data.
+        # Claims and captions of synthetic data begin with this warning.
         warning = "SYNTHETIC DATA, made by a simulation and not measured. "
         label = warning if synthetic else ""
         files = tuple(

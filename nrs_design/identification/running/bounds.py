@@ -23,21 +23,20 @@ class RunBounds:
     names_contacts: bool  # Whether rules name contacts, which no log shows
     torque: float  # Largest torque in N m
     delay: float | None  # Required delay margin in s
-    # In m, to convert linear columns into rotational ones; None where environments have none or
-    # several.
+    # Lever arm in m for linear columns; None if the environments declare no or several arms.
     lever_arm: float | None
     period: float | None  # Sample period of the proof in s; None for a proof in continuous time
-    # Whether the spec requires a proof for lost contact; None without a requirement.
+    # Declared contact: True if losable, False if kept, None if not declared.
     losable: bool | None
     command: str  # Unit of the motor's command
-    # Assumed deflections of each environment, in words; no log shows them.
+    # Assumed deflections of each environment, as text.
     preloads: Mapping[str, str] = field(default_factory=dict)
-    # Command at which the driver saturates, in that unit; None if unknown.
+    # Saturation level of the driver, in the unit of the command; None if unknown.
     saturates: float | None = None
-    # Condition on torque and angle of every row, or the reason why there is none.
+    # Sector condition on torque and angle of every row, or the reason for its absence.
     sector: Sector | str = ""
     oldest: float = 0.0  # How old a torque may be in its row, in s
-    latency: str = ""  # Time from a sample to its command, in words; empty for none
+    latency: str = ""  # Delay from sample to command, as text; empty without a delay
     proved: bool = False  # Whether a valid certificate proves the spec
 
     @property
@@ -75,7 +74,7 @@ def proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
         raise CertificateError(
             f"the certificate is rejected: {outcome.fault}",
             path=certificate,
-            remedy="make it anew with certify-switching --out, or name the spec that it is for",
+            remedy="create a new certificate with certify-switching --out, or name its spec",
         )
     verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
     if verdict != "proved":

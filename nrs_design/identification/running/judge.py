@@ -66,8 +66,7 @@ def judge_run(
             f"its command is read in {log.command_unit}, and the motor of the spec takes "
             f"{bounds.command}",
             path=log.source.path,
-            remedy=f"name the column that the motor is sent {column} in its header, or leave the "
-            "other out",
+            remedy=f"rename the column of the motor command to {column}, or leave the column out",
         )
     bounds = replace(bounds, proved=proved)
     tested, judged_share = judge_sector(log, bounds)
@@ -90,7 +89,7 @@ def judge_run(
 
 
 def _judge_contact(bounds: RunBounds, *, losable: bool | None) -> AuditCheck:
-    """Return the check of lost contact; `losable` is None if nothing states it."""
+    """Judge lost contact; `losable` is None if neither spec nor certificate declares it."""
     if losable:
         basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
         limit_text = "lost and made again at any time"
@@ -126,10 +125,12 @@ def _judge_delay(log: RunLog, bounds: RunBounds) -> AuditCheck:
     outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
     words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
-        return AuditCheck("delay", "not judged", f"not told by this record: {found.doubts[0]}")
+        return AuditCheck(
+            "delay", "not judged", f"not determined by this record: {found.doubts[0]}"
+        )
     if bounds.delay is None:
         return AuditCheck("delay", "not modelled", words, _time_of(bounds), bounds.assumption_basis)
-    # Beside gaps, only the longest stretch is judged.
+    # A log with gaps is judged in its longest stretch only.
     whole = rows.stop - rows.start == len(log.time)
     status: Status = "inside" if high < bounds.delay and whole else "undecided"
     limit_text, basis = f"below {bounds.delay:g} s", "delay margin of the design"

@@ -20,7 +20,7 @@ from nrs_design.identification.statistics import span
 _ROUNDING = 2.0**-48
 # Rows further apart than this number of periods leave samples out.
 _LONGEST_STEP = 1.5
-# Part of a row by which an age may exceed a whole number of rows.
+# Tolerance of an age, as a fraction of the time between rows.
 _AGE_TOLERANCE = 0.05
 
 
@@ -128,7 +128,7 @@ def _one_surface(
     lowest = np.maximum.accumulate(rows.lowest[part] + drift)
     highest = np.minimum.accumulate(rows.highest[part] - drift)
     empty = np.flatnonzero(lowest - drift > highest + drift)
-    # From the rows before: a row that is off would move its own interval.
+    # Both bounds come from earlier rows: an outlier would shift its own interval.
     before = np.concatenate([[-inf], lowest[:-1]]) - drift
     after = np.concatenate([[inf], highest[:-1]]) + drift
     factor, low, high = float(DETECTION_FACTOR), float(sector.low), float(sector.high)
@@ -143,7 +143,7 @@ def _stiffness(
 ) -> AuditCheck:
     percent = floor(1000 * share) / 10
     factor = float(DETECTION_FACTOR)
-    note = f"{factor:g} times the range would have been told in {percent:g} % of the rows"
+    note = f"{factor:g} times the range would have been detected in {percent:g} % of the rows"
     if first == inf:
         words = f"the range explains every row; {note}"
         return AuditCheck("stiffness", "undecided", words, limit_text, basis)

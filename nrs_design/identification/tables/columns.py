@@ -1,4 +1,4 @@
-"""Columns of a file: their quantities and units, and which of them belong together."""
+"""Quantities and units of the columns of a file, and layouts of columns."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from nrs_design.identification.errors import DataError
 KGF = 9.80665
 _TURN = 2 * pi / 60
 
-# Factor to SI for every unit that a quantity may be written in; the first is the SI unit. A command
-# stays in the unit of its driver: rpm of a command are a number, not a velocity. One that is a
-# velocity is read in rpm.
+# Factor to SI for every unit of a quantity; the first unit is the SI unit. A command stays in the
+# unit of its driver: rpm of a command are a number, not a velocity. A command in rad/s or deg/s is
+# read in rpm.
 UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},

@@ -40,7 +40,7 @@ class Source:
 
     path: Path  # The file, as the user named it
     sha256: str  # Hash of its bytes, in hexadecimal
-    # Whether a comment above the table says that the record is synthetic, not measured.
+    # True if a comment in the first lines contains "synthetic".
     synthetic: bool
 
 
@@ -52,7 +52,7 @@ class MeasurementTable:
     layout: tuple[str, ...]  # Quantities that were found
     values: dict[str, Array]  # By quantity, shape (n,) each
     columns: dict[str, Column]  # Their columns in the file
-    labels: tuple[str, ...]  # Words of the column of modes, whose values are indices of them
+    labels: tuple[str, ...]  # Names of modes; the values of the mode column are their indices
     first_line: int  # Line of the first row, for messages
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
@@ -75,13 +75,13 @@ def read_table(
     except DataError as error:
         error.path = data if isinstance(data, Path) else _ARRAYS
         raise
-    # Refuse values that are not finite, or whose squares, or their squares, leave the floats.
+    # Refuse NaN, infinity, and values whose fourth power overflows.
     for quantity, values in table.values.items():
         column = table.columns[quantity]
         bad = np.flatnonzero(~(np.abs(values) <= LARGEST))
         if len(bad):
             size = f"{column.name} is {values[bad[0]] / column.factor:.4g}"
-            message = f"{size}: no sensor has such a value"
+            message = f"{size}: no sensor measures this value"
             table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
     return table
 
@@ -229,7 +229,7 @@ def _filled(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
 class _Cells:
     """Turns cells into numbers."""
 
-    # Words of a column of modes, numbered in the order of their first use.
+    # Index of each mode name, in the order of first use.
     labels: dict[str, float] = field(default_factory=dict)
 
     def number(self, column: Column, cell: str, line: int) -> float:

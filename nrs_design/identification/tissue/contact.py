@@ -30,8 +30,8 @@ _LEAST_AIR = 0.01
 _FEWEST = 10
 # Largest ratio of the slope of the force in air to that in contact.
 _FLAT = 0.3
-# Corners must lower n log(SSE) by this against smooth curves without one, with n independent
-# samples, and each explain so much.
+# Least decrease of n log(SSE) by a corner against a smooth curve, for n independent samples, and
+# least explained fraction of the squared force.
 _BETTER = 20.0
 _EXPLAINED = 0.1
 # Quantile of chi^2 with one degree of freedom at 99 %.
@@ -48,8 +48,9 @@ class Touch:
     """Rows of one touch."""
 
     first: int  # First row beyond the position of contact
-    # met, lost: first row with force, and end of the rows with force. A tissue that is not at rest
-    # is met beyond the position of contact, and lost before it.
+    # force_begin, force_end: first row with force, and end of the rows with force. A deformed
+    # tissue is touched beyond the position of contact, and separates before the probe returns to
+    # this position.
     force_begin: int
     force_end: int
     end: int  # End of the rows beyond the position of contact
@@ -219,7 +220,7 @@ def _clear(force: Array, tissue_side: Flags) -> Flags:
 
 
 def find_cycles(deflection: Array) -> tuple[slice, ...]:
-    """Return the rows of each cycle, from the rest before loading to the end of unloading.
+    """Return the rows of each cycle of loading and unloading.
 
     Together they are all rows; there is one at least.
     """

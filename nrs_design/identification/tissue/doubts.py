@@ -46,7 +46,7 @@ def doubts(
     residuals: Array,
     sensitivities: Array,
 ) -> tuple[str, ...]:
-    """Return the doubts about a fit, in words; none for a sound fit.
+    """Return the doubts about a fit as sentences; empty for a sound fit.
 
     Bounds are the logarithms, lower and upper, between which the parameters were sought.
     """

@@ -73,8 +73,8 @@ def identify_tissue(
     _check(records)
     if coverage != "confidence" and len(records) < 2:
         raise DataError(
-            f"a range for {coverage} needs several records, and there is one: it says nothing of "
-            "the spread between specimens",
+            f"a range for {coverage} needs several records: a single record does not show the "
+            "spread between specimens",
             remedy="give more records, or take --covers confidence",
         )
     trials = [prepare(record, preparation) for record in records]
@@ -103,7 +103,7 @@ def _check(records: Sequence[TissueRecord]) -> None:
         raise DataError(
             "linear and rotational records are mixed",
             path=odd.source.path,
-            remedy="identify them one after the other",
+            remedy="identify linear and rotational records separately",
         )
     records_by_hash: dict[str, TissueRecord] = {}
     for record in records:

@@ -30,7 +30,8 @@ from nrs_design.models.contact.motion import Motion
 
 # A coefficient that the linear fit would make zero or negative starts at this part of its scale.
 _FLOOR = 1e-3
-# Bounds relative to the scale of a stiffness, and of a damping over one step or the whole record.
+# Bounds of a stiffness relative to its scale. Bounds of a damping relative to stiffness times step,
+# and to stiffness times duration.
 _STIFFNESS_BOX = 1e4
 _SHORTEST, _LONGEST = 1e-4, 1e3
 # Difference in the logarithm of a parameter.
@@ -117,7 +118,7 @@ class LeastSquaresProblem:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The offsets that are fitted, and add to the force in proportion."""
+        """Names of the offsets in the fit."""
         kind, trial = self.kind, self.trial
         keeps_force = issubclass(kind, AbstractLinearLaw) and kind.has_rest
         constants = (TARE, CONTACT) if keeps_force and trial.contact is not None else (TARE,)

@@ -17,7 +17,7 @@ class Preparation:
     # start, end: part of the record, in s from its beginning.
     start: float | None = None
     end: float | None = None
-    # Detect air, or treat the whole record as in contact.
+    # auto: detect air. given: all samples are in contact.
     contact: Literal["auto", "given"] = "auto"
     negate: bool = False  # Change the sign of the force
 

@@ -49,7 +49,7 @@ class Trial:
     side: int  # 1 if the tissue is where positions are larger, else -1
     contact: DetectedContact | None  # None if no air shows, or was not looked for
     drift: bool  # Whether the tare is fitted as moving
-    cuts: tuple[str, ...]  # Unused parts and reasons, in words
+    cuts: tuple[str, ...]  # Unused samples with reasons, as sentences
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
 
     @property

@@ -39,7 +39,7 @@ class LoadModel:
     """Simplified dynamics with correction coefficients, ``K Ms`` and ``K Gs`` (thesis 4.17)."""
 
     robot: Robot  # On its base
-    encoder_ratio: float  # Turns of the encoder per turn of the joint
+    encoder_ratio: float  # Rotations of the encoder per rotation of the joint
     correction: tuple[float, float, float]  # K of the three joints (thesis 3.38)
 
     def terms(self, angle: Array) -> LoadTerms:
@@ -76,7 +76,7 @@ class AbstractMotionLaw(ABC):
     """A law that follows joint angles by their encoders."""
 
     period: float  # Time between two ticks in s
-    encoder_ratio: float  # Turns n of the encoder per turn of the joint
+    encoder_ratio: float  # Rotations n of the encoder per rotation of the joint
     command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
 
     @abstractmethod

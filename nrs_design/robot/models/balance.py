@@ -30,8 +30,8 @@ class LegBalance:
     # arm_mass, coupler_mass: counter-masses M_c and M_b in kg.
     arm_mass: float
     coupler_mass: float
-    # arm_distance, coupler_distance: where they are, B_c from the coupler's end and B_b from the
-    # elbow, in m.
+    # arm_distance, coupler_distance: lever arms of the counter-masses, B_c from the coupler's end
+    # and B_b from the elbow, in m.
     arm_distance: float
     coupler_distance: float
     total_mass: float  # M_a, everything that the spring holds, in kg. It is no counter-mass.

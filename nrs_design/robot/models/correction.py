@@ -92,7 +92,7 @@ DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
 TABLE_3_5 = tuple(
     Sine(phi, psi, d) for d in DEPTHS for phi in (0.0, 0.1205) for psi in (0.0, 0.2043)
 )
-# Last row of the table: the whole workspace.
+# Last row of the table: the full workspace.
 WHOLE_WORKSPACE = Sine(0.2618, 0.3491, (0.150, 0.250))
 # Motions for the comparison of tilts: the depth moves, the angles are zero.
 DEPTH_SINES = tuple(Sine(0.0, 0.0, d) for d in DEPTHS)
@@ -103,7 +103,7 @@ class Correction:
     """Coefficients of the three joints, and what torque error they leave."""
 
     mean_ratio: Array  # ``mean(T*/T)`` (thesis 3.38), shape (3,)
-    # ``sum(T* T)/sum(T^2)``, shape (3,): it stays defined where a simplified torque passes zero.
+    # ``sum(T* T)/sum(T^2)``, shape (3,), defined also where a simplified torque passes zero.
     least_squares: Array
     # Root mean square of ``T* - K T`` with either, in N m, shape (3,).
     mean_ratio_error: Array

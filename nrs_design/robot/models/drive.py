@@ -8,8 +8,8 @@ from nrs_design.errors import DesignError
 from nrs_design.robot.models.vectors import Scalar
 from nrs_design.spec.robot import DriveSpec
 
-# Rounded digits of the four numbers that say the same: the thesis's agree within 0.01 %, with the
-# gradient that it prints within 0.8 %.
+# Tolerance for rounded digits of four dependent numbers. The numbers of the thesis agree within
+# 0.01 %, and within 0.8 % with the printed gradient.
 AGREEMENT = 0.05
 
 
@@ -26,7 +26,8 @@ class JointDrive:
     gears. The friction of the motor that the gain K accounts for is part of the damping.
     """
 
-    # Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
+    # Rotations of the encoder, at the gearhead's output, per rotation of the joint: 5 in the
+    # thesis.
     encoder_ratio: Scalar
     inertia: Scalar  # Inertia of the rotor at the joint, ``N^2 I_r`` in kg m^2
     damping: Scalar  # ``N^2/(K gradient)`` in N m s/rad

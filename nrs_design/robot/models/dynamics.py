@@ -81,7 +81,7 @@ def coriolis_matrix(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> Array
 def mass_and_bias(robot: Robot, pose: ArrayLike, velocity: ArrayLike) -> tuple[Array, Array]:
     """Return M in kg m^2 and ``C q' + G`` in N m in one pass; q' is that of the joints."""
     closed = posture(robot, pose)
-    # One pass: the motion as it is, then unit accelerations without velocity and weight.
+    # A batch of four: the actual velocity, then unit accelerations without velocity and gravity.
     lead = (4, *(1 for _ in np.shape(closed.d)))
     real = np.eye(1, 4).reshape(lead)
     velocities = real[..., None] * np.asarray(velocity, dtype=np.float64)
@@ -131,7 +131,7 @@ def _torque(closed: Posture, motion: RobotMotion, robot: Robot, weight: Scalar =
         force_d = force_d + force_depth
     left, right, middle = closed.legs
     theta3 = force_d / middle.beta_d
-    # Turning a side leg moves the crank of the middle leg too, unless the depth gives way.
+    # At constant depth, a rotation of a side leg also moves the crank of the middle leg.
     force_W = add(force_W, scale(theta3 * middle.beta_gamma / middle.sin_gamma, middle.leg.axis))
     theta1 = left.sin_gamma * dot(closed.u1, force_W)
     theta2 = right.sin_gamma * dot(closed.u2, force_W)

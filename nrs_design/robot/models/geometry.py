@@ -42,7 +42,8 @@ class LegPosture:
     cos_kappa: Scalar
     sin_kappa: Scalar
     end: tuple[Scalar, Scalar]  # Coupler's end in the plane, in m
-    # Its derivative with respect to gamma; that with respect to d is (cos gamma, sin gamma).
+    # Derivative of the end with respect to gamma; the derivative with respect to d is (cos gamma,
+    # sin gamma).
     end_gamma: tuple[Scalar, Scalar]
     # sin_elbow, cos_elbow: of the angle kappa - beta.
     sin_elbow: Scalar

@@ -27,7 +27,7 @@ class LegMotion:
 
 @dataclass(frozen=True, slots=True)
 class RobotMotion:
-    """Rates of the whole robot: direction W of the endoscope, depth d, and the legs."""
+    """Rates of the robot: direction W of the endoscope, depth d, and the legs."""
 
     W_1: Vector
     d_1: Scalar

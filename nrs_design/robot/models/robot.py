@@ -32,8 +32,8 @@ class Leg:
     l1: float
     l2: float
     l3: float
-    # crank, coupler, arm: each in a frame with its origin in the joint nearer to the base, x along
-    # the link and z normal to the leg's plane.
+    # crank, coupler, arm: moments in the frame of the link. The origin is the joint nearer to the
+    # base, x is along the link, z normal to the leg's plane.
     crank: Body
     coupler: Body
     arm: Body
@@ -81,8 +81,8 @@ class Robot:
     # Left, right, middle. The joints are the plane angles theta1 and theta2 of the side legs and
     # the crank angle theta3 of the middle leg.
     legs: tuple[Leg, Leg, Leg]
-    # In a frame with its origin at depth d on the endoscope axis, x towards the middle leg and z
-    # along the endoscope. It moves as one with the arm of the middle leg.
+    # Moments in a frame with origin at depth d on the endoscope axis, x towards the middle leg and
+    # z along the endoscope. The platform is rigidly connected to the arm of the middle leg.
     platform: Body
     gravity: float  # Gravitational acceleration in m/s^2
     base_tilt: float  # theta4 in rad

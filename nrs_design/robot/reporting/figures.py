@@ -113,7 +113,7 @@ def draw_correction(depth: TiltTable, angle_table: TiltTable) -> Figure:
             depth.mean_ratio[:, joint],
             color=color(joint),
             marker=marker(joint),
-            # At places of its own, so that curves on top of each other show both markers.
+            # An offset for each joint, so that coinciding curves show all markers.
             markevery=(joint * step // len(JOINTS), step),
             markersize=5,
             label=f"{name}, depth only, mean ratio",

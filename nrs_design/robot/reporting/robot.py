@@ -163,8 +163,8 @@ def _workspace(loaded: LoadedSpec, robot: Robot, survey: WorkspaceSurvey) -> Sec
     figure = Illustration(
         "workspace",
         "Reach over the workspace",
-        "How far the leg that is nearest to its limit is from it, at three depths. White: some leg "
-        "cannot reach.",
+        "Distance of the critical leg from its limit, at three depths. White: some leg cannot "
+        "reach.",
         draw_workspace(robot),
     )
     return Section(_WORKSPACE, (*workspace_tables(loaded, survey), figure))
@@ -175,7 +175,7 @@ def _dynamics(robot: Robot) -> Iterator[Block]:
     depths = [low + share * (high - low) for share in _SHARES]
     yield Illustration(
         "torque-shares",
-        "What the torques are made of",
+        "Composition of the torques",
         "Mean shares of gravity, velocities and accelerations over poses at three depths, at the "
         "joint speeds and accelerations of thesis 3.3.",
         draw_torque_shares(robot, depths),
@@ -188,8 +188,8 @@ def _correction(robot: Robot) -> Iterator[Block]:
     quantities = found.mean_ratio, found.least_squares, found.least_squares_error
     rows = tuple((name, *map(number, row)) for name, *row in zip(JOINTS, *quantities, strict=True))
     yield Paragraph(
-        "Torque of the full model over that of the simplified one, which a controller can evaluate "
-        "at every tick."
+        "Ratio of the torques of the full and the simplified model. A controller can evaluate the "
+        "simplified model at every tick."
     )
     columns = ("Joint", "Mean ratio [1]", "Least squares [1]", "Error left [N·m]")
     yield Table("Coefficients over all motions of thesis table 3.5", columns, rows)

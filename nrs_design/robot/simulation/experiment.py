@@ -14,7 +14,7 @@ from nrs_design.robot.models.vectors import Array, root_mean_square
 
 HOLD_TIME = 10.0
 # Angular frequencies in rad/s: 2 pi 0.1 of 4.20 to 4.22, 4.34 and 4.35, and 0.0571 of 4.33c and
-# 4.37 to 4.39, taken literally. It makes a period of 110 s.
+# 4.37 to 4.39, taken literally: a period of 110 s.
 FAST, SLOW = 2 * pi * 0.1, 0.0571
 MOTIONS = ("d", "phi", "psi")
 # Index of each coordinate in a pose.

@@ -18,8 +18,8 @@ from nrs_design.robot.simulation.track import Track
 
 # Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
 STEPS_PER_TICK = 1
-# Phase of the sine in rad for which mass matrix and bias are held, at least one step: 2 ms at
-# 0.1 Hz, 34 ms at 0.0571 rad/s. A quarter of it does not change the fourth digit either.
+# Phase of the sine in rad with constant mass matrix and bias, at least a step: 2 ms at 0.1 Hz, 34
+# ms at 0.0571 rad/s. A quarter of this phase does not change the fourth digit.
 HELD_PHASE = 2e-3
 # Arrays of so many ticks still fit into memory.
 MOST_TICKS = 2_000_000
@@ -113,7 +113,7 @@ def _lockstep(batch: Sequence[Track], hold_steps: int) -> list[TrackingRecord]:
 def _out_of_reach(batch: Sequence[Track], time: float) -> DesignError:
     names = ", ".join(dict.fromkeys(one.controller for one in batch))
     return DesignError(
-        f"a simulated motion ({names}) leaves what the robot can reach at {time:.4g} s",
+        f"a simulated motion ({names}) leaves the reach of the robot at {time:.4g} s",
         remedy="check the gains and the sample period: the loop may be unstable",
     )
 

@@ -28,8 +28,8 @@ CONTROLLERS = ("computed-torque", "independent-joint", "balanced")
 class Encoder:
     """Absolute encoder at the output of the gearhead (MagAlpha MA707, thesis 4.1)."""
 
-    ratio: float  # Turns of the encoder per turn of the joint
-    counts: int | None  # Per turn of the encoder; None does not round
+    ratio: float  # Rotations of the encoder per rotation of the joint
+    counts: int | None  # Counts per rotation of the encoder; None for exact readings
 
     def read(self, joints: Array) -> Array:
         """Return the encoder angles in rad for joint angles, rounded to the count."""

@@ -131,7 +131,7 @@ def read_lag(text: str) -> Range:
 
 
 def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
-    """Read one quantity, or two with ``..`` between them; None without a text."""
+    """Read a range such as ``5..20 ms``, or a single quantity."""
     if text is None:
         return None
     remedy = f"write {option} '{kind.example}'"

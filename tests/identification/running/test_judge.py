@@ -133,7 +133,7 @@ def test_a_delay_that_the_record_does_not_tell(tmp_path):
     text = runs.text(t, angle, torque, command, np.full(len(t), "insertion"))
     found = check(judged(log(tmp_path, csv=text)), "delay")
     assert "[" not in found.measured
-    assert found.measured.startswith("not told by this record")
+    assert found.measured.startswith("not determined by this record")
 
 
 def following(frequencies, noise=0.001):
@@ -153,7 +153,7 @@ def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
     asked = replace(SOFT, delay=0.03)
     found = check(judged(log(tmp_path, following([1.3])), asked), "delay")
     assert (found.status, found.time) == ("not judged", None)
-    assert "cannot be told apart" in found.measured
+    assert "cannot separate a delay from a lag" in found.measured
     told = following([1.3, 3.7, 7.1])
     assert check(judged(log(tmp_path, told), asked), "delay").status == "inside"
     # Beside a gap, the rows of the longest stretch say nothing of the others.

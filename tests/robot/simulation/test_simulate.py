@@ -91,7 +91,7 @@ def test_an_unstable_loop_is_said_to_be_one(tracks):
         track,
         law=replace(track.law, motion=ProportionalDerivative(Fraction(10**7), Fraction(10**6))),
     )
-    with pytest.raises(DesignError, match=r"independent-joint.*leaves what the robot can reach"):
+    with pytest.raises(DesignError, match=r"independent-joint.*leaves the reach of the robot"):
         simulate([wild], report=(told := []).append)
     assert told == ["1 experiment, 2.5 s"]
 

@@ -34,7 +34,7 @@ def test_the_frame_of_masses_depends_on_the_release(tmp_path):
     assert "since ros2_controllers 6.4.0, masses act along the axes of the control frame" in (
         found.message
     )
-    assert "before, along those of the base" in found.message
+    assert "along the axes of the base" in found.message
     one = ("control: {frame: {id: tool0}}", "control: {frame: {id: base_link}}")
     assert traps(changed(tmp_path, masses, one)) == []
 

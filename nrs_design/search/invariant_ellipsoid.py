@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 USUAL, STEP, REFINED = (0.38, 0.15, 0.06, 0.024, 0.009, 0.8), 1.5, 3
 SMALLEST = 0.001
 # Claimed levels relative to the least level; the nearer, the harder to round.
-SLACKS = (1.002, 1.01, 1.03, 1.1)
+SLACKS = (1.002, 1.01, 1.02, 1.03, 1.1)
 # Steps of a response that is summed for the scale.
 STEPS = 4000
 
@@ -267,6 +267,8 @@ def best_share(attempt: Callable[[float], float], top: float) -> tuple[float, fl
             best *= factor
         if best != start:
             break
+    if best == max(values_by_share):
+        value((best + top) / 2)  # A parabola needs a share on either side.
     for _ in range(REFINED if isfinite(value(best)) else 0):
         shares = sorted(values_by_share)
         k = shares.index(best)

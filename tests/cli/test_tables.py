@@ -9,7 +9,7 @@ from tests.support import SOFT_TISSUE
 from tests.terminal import run_on_terminal
 
 STYLE = re.compile("\x1b\\[[0-9;?]*[A-Za-z]")
-NUMBERS = ("2.1486", "43.0356", "0.1552", "1.0743", "59.13 deg", "9.89 ms")
+NUMBERS = ("2.15", "0.1552", "59.13 deg", "9.89 ms")
 
 
 @pytest.mark.slow
@@ -19,7 +19,7 @@ def test_no_number_is_broken(tmp_path, columns):
     plain = STYLE.sub("", shown)
     assert code == 0
     assert all(number in plain for number in NUMBERS)
-    result = plain[plain.index("soft-tissue: G(s)") :]
+    result = plain[plain.index("soft-tissue: the worst") :]
     assert max(map(len, result.splitlines())) <= columns
 
 

@@ -126,8 +126,7 @@ def test_what_is_no_file(place, command, kind):
         os.mkfifo(path)
     else:
         path.symlink_to("/dev/zero" if kind == "device" else path)
-    ended = check(place, *command, codes=(0, 2) if is_schema else (2,))
-    assert ("nrs.schema.json" in ended.text) is is_schema
+    check(place, *command, codes=(0, 2) if is_schema else (2,))
 
 
 @pytest.mark.parametrize("option", ["--reports", "--lock"])

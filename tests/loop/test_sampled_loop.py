@@ -174,18 +174,16 @@ def test_two_periods_of_the_thesis_robot(sampling, verdict, least):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("nominal", "ends", "delay", "least"), [("1", ("0", "3"), 0, "2.2"), ("5", ("5", "9"), 1, "1")]
-)
-def test_damped_contact_that_is_lost_is_proved(nominal, ends, delay, least):
+@pytest.mark.parametrize(("nominal", "ends", "delay"), [("1", ("0", "3"), 0), ("5", ("5", "9"), 1)])
+def test_damped_contact_that_is_lost_is_proved(nominal, ends, delay):
     ranged = f"[{ends[0]} N*s/m, {ends[1]} N*s/m]"
     damping = f"{{nominal: {nominal} N*s/m, range: {ranged}}}"
     changed = DAMPED[0], f"model: kelvin-voigt\n    damping: {damping}"
     system = sampled(f"{{period: 2 ms, delay: {delay}}}\ncontact: losable", changed)
-    result = certify(system, limits=Limits(optimize_rate=delay == 0))
+    result = certify(system)
     assert result.verdict is Verdict.PROVED
     assert result.evidence.covers_rounding
-    assert (1 - result.evidence.rate) / system.sample_time > Fraction(least)
+    assert (1 - result.evidence.rate) / system.sample_time > Fraction("2.2")
 
 
 MIXED = ROOT / "docs/examples/mixed-controllers.nrs.yaml"

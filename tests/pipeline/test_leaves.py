@@ -20,6 +20,8 @@ TEXTS = {"name", "title", "comment", "source", "notes", "identified", "scenarios
 # are given as they ship.
 FORCE = {"force-limit.nrs.yaml", "force-limit-offset.nrs.yaml", "force-limit-pi.nrs.yaml"}
 FORCE_ALONE = {"limits.velocity", "limits.torque", "limits.bandwidth", "design.significant_digits"}
+# An optimum on its lower bound does not reach the upper one.
+UNREACHED = ".Mt.max"
 
 
 def leaves(node, at=()):
@@ -70,4 +72,5 @@ def shipped(path):
 def test_every_leaf_has_an_effect(path):
     before = outcome(path.read_text("utf-8"))
     idle = {".".join(map(str, at)) for at, text in shipped(path) if outcome(text) == before}
-    assert idle == (FORCE_ALONE if path.name in FORCE else set())
+    unreached = {place for place in idle if place.endswith(UNREACHED)}
+    assert idle - unreached == (FORCE_ALONE if path.name in FORCE else set())

@@ -38,7 +38,7 @@ from nrs_design.search.polynomial import make_vanish, products, vanishing_basis
 from nrs_design.search.rates import numerators, rate_at, round_form, round_rate
 from nrs_design.search.sdp import STEPS, SemidefiniteProgram, pack, packed_columns, unpack
 from nrs_design.search.stays import enough_pieces
-from nrs_design.search.work import Allowance
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -98,6 +98,13 @@ class FormsProgram:
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
         self._last: Array | None = None  # What our own method found last
 
+    @property
+    def _building(self) -> Cost:
+        """Predict the memory for the images of all forms: packed, and in full for one edge."""
+        sizes = [(self.edges[k].size, self.sizes[self.edges[k].before]) for k in self.active]
+        full = [8.0 * size**2 * n * (n + 1) / 2 for size, n in sizes]
+        return Cost(0.0, sum(full) / 2 + 3 * max(full, default=0.0))
+
     @cached_property
     def is_dear(self) -> bool:
         """Tell whether our own method is faster than a general solver.
@@ -139,6 +146,7 @@ class FormsProgram:
         Of many edges of quadratic forms, only those are kept to which the last solution left a
         margin well below that of the others.
         """
+        allowance.require(self._building, f"a program of {self._starts[-1] + 1} unknowns or more")
         while True:
             solution = self.solve_for(self.active, rate, allowance)
             if solution is None or len(self.active) == len(self.edges):

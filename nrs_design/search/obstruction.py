@@ -19,7 +19,7 @@ from nrs_design.search.balance import time_unit
 from nrs_design.search.family import Family
 from nrs_design.search.rates import digits
 from nrs_design.search.sdp import SemidefiniteProgram, packed_columns, symmetric_basis, unpack
-from nrs_design.search.work import Allowance
+from nrs_design.search.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -43,8 +43,11 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     Returns the X_i, shape (m, n, n), if s > 0; else None. Modes are preferably balanced, and few.
     """
     m, n = matrices.shape[:2]
+    own, allowance = n * (n + 1) // 2, allowance or Allowance()
+    # Images in full, by their factors and packed, before the program itself is predicted.
+    built = Cost(0.0, 8.0 * m * own * (3 * n**2 + 2 * own))
+    allowance.require(built, f"a program of {m * own + 1} unknowns")
     basis, zero = symmetric_basis(n), np.zeros((n, n))
-    own = len(basis)
     half = np.ldexp(matrices, time_unit(matrices, time))[:, None] @ basis
     images = half + np.swapaxes(half, -1, -2)
     if time is Time.DISCRETE:
@@ -56,7 +59,7 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     program.add(zero, [(0, packed_columns(images.reshape(-1, n, n))), margin])
     traces = -np.trace(basis, axis1=1, axis2=2)
     program.add(np.ones((1, 1)), [(0, np.tile(traces, m)[None])])
-    found = program.maximize(allowance or Allowance())
+    found = program.maximize(allowance)
     if found is None or found.x[-1] <= 0:
         return None
     return unpack(found.x[:-1].reshape(m, own), n)

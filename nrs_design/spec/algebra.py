@@ -19,7 +19,7 @@ def read_algebra(
     operators: Operators[T],
     power: Callable[[T, int], T] | None = None,
 ) -> T:
-    """Combine what is read of each leaf of a text by its operators; a ValueError if it is none.
+    """Evaluate an expression: read each leaf, combine by the operators; a ValueError if it is none.
 
     `leaf` is a pattern of names and numbers. Exponents are integers. Python sees neither: a leaf
     stands for it as a name of our own.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 # Inputs by name: how large each gets, and its unit.
 Bounds = Mapping[str, tuple[Fraction, str]]
-# A law that is known within a range of deflections, and the ends of that as they are written.
+# A law that is known within a range of deflections, and the written ends of the range.
 Preload = tuple["type[AbstractNonlinearLaw]", str, str]
 
 
@@ -41,26 +41,26 @@ Preload = tuple["type[AbstractNonlinearLaw]", str, str]
 class OperatingConditions:
     """Processor, switching, contact and bounds of a loop; numbers are exact and in SI units."""
 
-    name: str  # Of the spec
-    axis: AxisType  # Whose units its numbers have
+    name: str  # Name of the spec
+    axis: AxisType  # The axis, which gives the units of its numbers
     switching: SwitchingSpec
     contact: Literal["losable", "kept"] | None  # None: losable where that can be proved
-    idle: IdleStatesSpec | None  # What idle states do
-    offset: Offset  # Where the offset of the force controllers is taken from
+    idle: IdleStatesSpec | None  # Rule of idle states
+    offset: Offset  # Source of the offset of the force controllers
     sampling: SamplingSpec | None  # The processor; None in continuous time
     # Shortest and longest time in s from a sample to the moment when its command takes effect.
     command_delay: tuple[Fraction, Fraction]
-    constant_delay_key: str | None  # The key that says it, where it is unknown but constant
-    disturbances: Bounds | None  # None where nothing is said to disturb
-    largest_angle: Fraction | None  # Of the joint in rad, rounded up
+    constant_delay_key: str | None  # Its key, if it is unknown but constant
+    disturbances: Bounds | None  # None without declared disturbances
+    largest_angle: Fraction | None  # Largest angle of the joint in rad, rounded up
     torque: Fraction  # Limit about the pivot in N m
     velocity: Fraction  # Limit of the velocity command in rad/s, rounded down
     largest_command: Fraction | None  # Limit of the motor command in its unit, rounded down
     command: str  # Unit of the motor command
-    largest_integral: Fraction | None  # Where the integral of the force error is cut off, in rad
+    largest_integral: Fraction | None  # Limit of the integral of the force error, in rad
     contacted: frozenset[str]  # The environments that some controller touches
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
-    preloads: Mapping[str, Preload]  # Of the environments that are touched
+    preloads: Mapping[str, Preload]  # Preloads of the touched environments
     sensed: bool  # The spec describes a sensor
 
 
@@ -107,7 +107,7 @@ def _drive(spec: InteractionDesignSpec, loop: MotionLoop) -> Drive | None:
 
 
 def _torque(robot: TorqueInterfaceSpec, command: str) -> tuple[ActuatorRanges, Fraction, Drive]:
-    """Return the joint, and what it is as a motor: of speed u/B, with the time constant J/B."""
+    """Return the joint, and the equivalent motor: speed u/B, time constant J/B."""
     J, B = robot.inertia.interval, robot.friction.interval
     gain = Interval(1 / B.nominal, 1 / B.high, 1 / B.low)
     lag = Interval(J.nominal / B.nominal, J.low / B.high, J.high / B.low)
@@ -115,7 +115,7 @@ def _torque(robot: TorqueInterfaceSpec, command: str) -> tuple[ActuatorRanges, F
 
 
 def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
-    """Yield every environment of a spec, then what several are that are touched at once."""
+    """Yield every environment of a spec, then the sums of those touched at the same time."""
     known = {}
     for name, written in spec.environments.items():
         turned = written.linear_at_pivot()
@@ -133,7 +133,7 @@ def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
 
 
 def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
-    """Take from a spec what closing its loop needs beside plant and gains."""
+    """Return the conditions of a spec that its loop needs beside plant and gains."""
     limits, disturbed, goals = spec.limits, spec.disturbances, spec.goals
     angle = None if disturbed is None else disturbed.largest_angle
     wanted = None if goals is None else goals.initial_force

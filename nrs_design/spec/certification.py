@@ -1,4 +1,4 @@
-"""How far the search for a proof goes, as far as a spec says it."""
+"""Limits of the search for a proof that a spec may give."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _read_budget(value: object) -> Fraction:
 
 
 class CertificationSpec(SpecModel, stronger="beside"):
-    """How far the search for a proof goes; options of the commands override it."""
+    """Limits of the search for a proof; options of the commands override them."""
 
     max_degree: Annotated[int | None, ParsedBy(_read_degree, _DEGREE_SCHEMA)] = optional(
         "highest degree of a polynomial Lyapunov function: even, at most 64; default: by the budget"

@@ -1,4 +1,4 @@
-"""Checks of a spec as rows of tables: where, what must not be, what is said, and what to do."""
+"""Checks of a spec as rows of tables: place, condition, message and remedy."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class Feature(Generic[S]):
     What a spec is found to have fills the places ``{0}`` of the texts.
     """
 
-    # As a part of a sentence, such as "a hand with a mass".
+    # Words for a sentence, such as "a hand with a mass".
     phrase: str
-    # Where a spec says it.
+    # Its place in a spec.
     at: str
-    # How to do without it.
+    # Remedy: how a spec does without it.
     without: str
-    # False, None or "" where a spec has none; a text, or more, names what has it.
+    # False, None or "" if a spec lacks it; a text, or several, names the parts that have it.
     find: Callable[[S], object]
 
 
@@ -51,13 +51,13 @@ class Row(Generic[S]):
 
     # Keys with dots between, below the part; a key may be a place to be filled, such as ``{0}``.
     at: str
-    # False, None, "" or () where nothing is wrong; of an iterator, the first item is what is found.
+    # False, None, "" or () if nothing is wrong; the first item of an iterator is the finding.
     find: Callable[[S], object]
     message: str
     remedy: str
-    # The parts that it is about, each with its place; by default the whole.
+    # The checked parts, each with its place; by default the whole spec.
     parts: Callable[[Any], Iterable[tuple[Location, Any]]] = _itself
-    # Those that do not combine, where the condition is that a spec has all of them.
+    # Features that do not combine, if the condition is that a spec has all of them.
     features: tuple[Feature[Any], ...] = ()
 
     def faults(self, said: Any) -> Iterator[PydanticCustomError]:
@@ -65,7 +65,7 @@ class Row(Generic[S]):
         for place, part in self.parts(said):
             found = self.find(part)
             if found := next(found, None) if isinstance(found, Iterator) else found:
-                # A named tuple is one thing that is found.
+                # A named tuple is one finding.
                 values = found if type(found) is tuple else (found,)
                 at = (
                     int(key) if key.isdigit() else key.format(*values, s=part)
@@ -89,7 +89,7 @@ def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) ->
 def refuse(
     found: Callable[[S], Iterable[tuple[Location, object]]], message: str, remedy: str
 ) -> Row[S]:
-    """Return the check that nothing is found; each find, with its place, fills the texts."""
+    """Return the check that there are no findings; each finding, with its place, fills texts."""
     return Row("", lambda item: item, message, remedy, parts=found)
 
 
@@ -153,7 +153,7 @@ def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A name in a spec that leads to another part of it, and those that there are."""
+    """A name in a spec that refers to another part, and the existing names."""
 
     noun: str
     name: str

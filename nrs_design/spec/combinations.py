@@ -1,4 +1,4 @@
-"""Which features of an interaction design are not modelled beside which others: one table."""
+"""Table of the pairs of features of an interaction design that are not modelled together."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _rows() -> Iterator[Row[Spec]]:
 
 
 COMBINATIONS: tuple[Row[Spec], ...] = tuple(_rows())
-# What may change while one controller is active: a dwell time is refused beside it.
+# Quantities that may change while one controller is active: a dwell time beside them is refused.
 CHANGING: tuple[tuple[Feature[Spec], ...], ...] = tuple(
     row.features[1:] for row in COMBINATIONS if row.features[0] is has.DWELL
 )

@@ -29,9 +29,9 @@ _CONTACTS = (
 _GOALS = "goals of this controller; they replace the spec's own, key by key"
 
 
-# What the motion loop gets from a controller.
+# The command that a controller gives to the motion loop.
 Command = Literal["velocity", "position"]
-# Where the offset X_i of thesis 6.41 is taken from, at every switch.
+# Source of the offset X_i of thesis 6.41 at every switch.
 Offset = Literal["none", "reference", "measured"]
 
 
@@ -93,35 +93,35 @@ class CostWeights(SpecModel, stronger="neither"):
 
 
 class AbstractControllerSpec(SpecModel, stronger="neither"):
-    """What all controllers have in common."""
+    """Fields that all controllers share."""
 
     # The motion loop integrates a velocity, and follows a position.
     commands: ClassVar[Command]
-    # Whether it holds a force against what it touches, or a position whatever it touches.
+    # True: it holds a force on its contact; false: it holds a position, whatever the contact.
     holds_force: ClassVar[bool] = False
     holds_position: ClassVar[bool] = False
-    # Whether it makes the torques of a robot that takes some.
+    # Whether it commands torques to a robot with a torque interface.
     makes_torques: ClassVar[bool] = False
-    # Whether it keeps a state that stays in the command of other controllers, and decays there.
+    # Whether its state stays in the command of other controllers and decays there.
     is_leaky: ClassVar[bool] = False
-    # Whether its design has a limit of the stiffness that it may touch.
+    # Whether its design limits the stiffness of contacts.
     limits_stiffness: ClassVar[bool] = False
-    # Gains that `design.free` may name, and the key in whose place each may be given.
+    # Gains that `design.free` may name, each with the key that it replaces.
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({})
 
     @property
     def own_offset(self) -> Offset | None:
-        """Where it takes an offset of its command from; None where there is no such offset."""
+        """The source of the offset of its command; None without an offset."""
         return None
 
     @property
     def sprung(self) -> bool:
-        """Whether a spring draws it back to its position reference."""
+        """Tell whether a spring draws it back to its position reference."""
         return "Kt" in self.gains()
 
     @property
     def displayed(self) -> Quantity | Fraction | None:
-        """The impedance that it is to display, or that over torque/velocity; None without one."""
+        """The desired impedance, or its ratio of torque to velocity; None without one."""
         return None
 
     def gains(self) -> dict[str, GainSpec]:
@@ -130,7 +130,7 @@ class AbstractControllerSpec(SpecModel, stronger="neither"):
 
 
 class AbstractContactControllerSpec(AbstractControllerSpec):
-    """What controllers have in common that touch something."""
+    """Fields that all controllers in contact share."""
 
     type: str
     environment: Label = required(_ENVIRONMENT, "unknown")
@@ -189,7 +189,7 @@ class ImpedanceControllerSpec(AbstractContactControllerSpec):
     )
 
 
-# In which ways a gain is given, each with an example.
+# The ways to give a gain, each with an example.
 _PROPORTIONAL = {
     "proportional_gain": "proportional_gain: 0.02 rad/(N*m)",
     "damping_ratio": "damping_ratio: 0.741",
@@ -201,7 +201,7 @@ _INTEGRAL = {
 
 
 def _just_one_of(*ways: dict[str, str]) -> ConfigDict:
-    """Return what the JSON Schema says of keys of which just one of each is given."""
+    """Return the JSON Schema of keys of which exactly one of each group is given."""
     return ConfigDict(json_schema_extra={"oneOf": [{"required": [*k]} for k in product(*ways)]})
 
 
@@ -288,7 +288,7 @@ class PositionControllerSpec(AbstractControllerSpec):
 
 
 class IdleStatesSpec(SpecModel, stronger="neither"):
-    """What the states of impedance and pi-force controllers do while others are active."""
+    """Behaviour of idle states of impedance and pi-force controllers."""
 
     decay: field.Decay = required(
         "rate in 1/s of the admittance velocity, the position reference and the integral of "

@@ -32,7 +32,7 @@ MAX_LISTED = 20
 _LISTED = frozenset(
     ["type", "environment", "contacts", "desired_impedance", "desired_impedance_ratio", "goals"]
 )
-# What is listed behind the controllers, and behind what identification wrote down.
+# Sections after the controllers, and after the notes of identification.
 _OTHERS = (
     *("idle_states", "anti_windup", "goals", "design", "sampling", "disturbances", "sensor"),
     *("monitoring", "mode_logic", "scenarios"),
@@ -61,7 +61,7 @@ class Line(NamedTuple):
 
 
 def describe(spec: Spec) -> tuple[Line, ...]:
-    """List what a spec says: name, text as written, SI value and SI unit of each line.
+    """List the lines of a spec: name, text as written, SI value and SI unit.
 
     Linear stiffness is shown at the pivot.
     """
@@ -124,7 +124,7 @@ def _environment(name: str, environment: AbstractEnvironmentSpec) -> Iterator[Li
     for key in type(environment).model_fields:
         if key not in parameters and key not in AbstractEnvironmentSpec.model_fields:
             yield from describe_model(getattr(environment, key), f"{name}.{key}")
-    # Where stiffness and damping of a power law are over its preload, at the pivot.
+    # Ranges of stiffness and damping of a power law over its preload, at the pivot.
     for key, interval in environment.linear_at_pivot().items() if environment.preloaded else ():
         unit = unit_at_pivot(parameters[key].nominal)
         value = _ends(float(interval.low), float(interval.high))
@@ -134,7 +134,7 @@ def _environment(name: str, environment: AbstractEnvironmentSpec) -> Iterator[Li
 
 
 def _identified(name: str, item: SpecModel) -> Iterator[Line]:
-    """List what is known of values that were identified, and where they come from."""
+    """List the identified values with their sources and qualities."""
     covers = COVERS if isinstance(item, AbstractEnvironmentSpec) else MOTOR_COVERS
     for key in (key for key in _IDENTIFIED if key in type(item).model_fields):
         value = getattr(item, key)

@@ -25,19 +25,19 @@ from nrs_design.spec.syntax import explain_syntax, fault_mark
 
 MAX_BYTES = 1024 * 1024
 MAX_DEPTH = 20
-# So many faults of syntax are enough to mend: a hostile file is not read further.
+# Largest number of syntax faults: a hostile file is not read further.
 MAX_FAULTS = 100
 # Keys and values; the parser takes some ten microseconds for each.
 MAX_NODES = 150_000
-# Longer texts are no names, numbers or titles; what follows need not fear them.
+# Longest text: names, numbers and titles are shorter, and later code relies on that.
 MAX_SCALAR = 1000
 
-# Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
+# Escapes such as "\ud800" make surrogates, which cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _TABLES = {".csv", ".tsv"}
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
-# What YAML 1.2 reads as a truth value or a number, when it is not quoted.
+# Texts that YAML 1.2 reads as a truth value or a number if they are not quoted.
 _NOT_TEXT = re.compile(
     r"true|True|TRUE|false|False|FALSE"
     r"|[+-]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+"
@@ -56,7 +56,7 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A leaf of the tree: text as written, whatever YAML would make of it."""
+    """A leaf of the tree: the text as written, without the types of YAML."""
 
     text: str
     position: Position
@@ -143,7 +143,7 @@ def parse_document(text: str, path: Path | None = None) -> Node:
 
 
 def parse_with_faults(text: str, path: Path | None = None) -> tuple[Node, tuple[Fault, ...]]:
-    """Parse a document as `parse_document` does, past all faults that leave the rest readable.
+    """Parse a document as `parse_document` does; go on after faults that leave the rest readable.
 
     Returns the tree, in which an empty text stands where a value could not be read, and the faults.
     If the rest cannot be read, the `SpecError` holds the faults before, too.
@@ -153,7 +153,7 @@ def parse_with_faults(text: str, path: Path | None = None) -> tuple[Node, tuple[
 
 
 def steps_to(root: Node, at: Iterable[str | int]) -> Iterator[tuple[Position, Node]]:
-    """Yield where each key or item on the way to a place stands, and its value, as far as there."""
+    """Yield position and value of each key or item on the path to a place that the file holds."""
     node = root
     for part in at:
         if isinstance(node, Mapping) and part in node.entries:
@@ -229,7 +229,7 @@ class _Builder:
             raise SpecError.combine(self.faults, self._path)
 
     def _fail(self, message: str, place: Position, remedy: str) -> NoReturn:
-        """Give up; an indentation that does not fit, for instance, leaves the rest unreadable."""
+        """Give up, for instance at a wrong indentation, which leaves the rest unreadable."""
         self._note(message, place, remedy)
         raise SpecError.combine(self.faults, self._path)
 
@@ -274,7 +274,7 @@ class _Builder:
             yield event
 
     def _check_size(self) -> None:
-        """Refuse, before the parser sees it, what would keep it busy for long.
+        """Refuse a text that would keep the parser busy for long.
 
         Its time grows with the square of the length of a tag; every comma and every line may be
         followed by one more node.
@@ -360,7 +360,8 @@ class _Builder:
         if _is_missing(event):
             remedy = "write a value or remove the key"
             if key[:1].isdigit():
-                # Nothing else is said then: the number before the comma seems to lack its unit.
+                # Other faults are dropped then: the number before the comma seems to lack its
+                # unit.
                 remedy = "write decimals with a point: a comma ends a value"
                 self._fail(f"the key {quoted(key)} has no value", key_place, remedy)
             self._note(f"the key {quoted(key)} has no value", key_place, remedy)

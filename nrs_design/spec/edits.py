@@ -1,4 +1,4 @@
-"""A document with places changed: what a person could have written instead."""
+"""Edits of a document: values that a person could have written instead."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from pathlib import Path
 from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence, steps_to
 
 Keys = tuple[str | int, ...]
-# A place, and what is written there; None leaves it out.
+# A place and its new value; None removes it.
 Edit = tuple[Keys, Data | None]
 
 _SAID: ContextVar[tuple[str, tuple[Edit, ...]] | None] = ContextVar("said", default=None)
 
-# What may change beside identified values.
+# Keys that may change without a change of identified values.
 NOT_IDENTIFIED = frozenset({"provenance", "accept_doubt", "range_id", "load_inertia"})
 
 
 def node_at(root: Node, at: Keys) -> Node | None:
-    """Return what stands at a place, or None if the document does not have it."""
+    """Return the value at a place of a document, or None without one."""
     nodes = [root, *(node for _, node in steps_to(root, at))]
     return nodes[-1] if len(nodes) > len(at) else None
 
 
 def identified_above(root: Node, at: Keys) -> tuple[Keys, ...]:
-    """Return where it is said that values are those that were identified, if they are at a place.
+    """Return the place of the notes of identification about the values at a place, if any.
 
     That holds of no others.
     """
@@ -40,7 +40,7 @@ def identified_above(root: Node, at: Keys) -> tuple[Keys, ...]:
 
 
 def with_edits(root: Node, edits: Iterable[Edit]) -> Node:
-    """Return a document with all edits, without what identification said of the values before."""
+    """Return a document with all edits, without notes of identification about the old values."""
     edits = tuple(edits)
     for at in dict.fromkeys(key for place, _ in edits for key in identified_above(root, place)):
         root = changed(root, at, None)
@@ -89,7 +89,7 @@ def _node(said: Data, place: Position) -> Node:
 
 
 def in_one_line(said: Data) -> str:
-    """Write a value in one line, as it may stand in a spec."""
+    """Return a value as one line of a spec."""
     if isinstance(said, str):
         return said
     if isinstance(said, tuple):
@@ -99,7 +99,7 @@ def in_one_line(said: Data) -> str:
 
 @contextmanager
 def saying_instead(file: Path, edits: Iterable[Edit]) -> Iterator[None]:
-    """Read a file as if somebody had written other values into it; other files as they are.
+    """Read a file as if it held other values; read other files unchanged.
 
     No file is written, names of others stay relative to its folder, and everything keeps its place.
     """

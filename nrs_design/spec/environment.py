@@ -43,7 +43,7 @@ _LENGTHS = "write lengths with a lever_arm, and angles without one"
 
 
 class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
-    """What all environments have in common; parameters of the law are the ranged quantities."""
+    """Fields that all environments share; the ranged quantities are the parameters of the law."""
 
     # The law that designs and proofs take, and its own where that is not linear: the former stands
     # for it while the deflection stays in a preload, off its surface, and no more.
@@ -105,7 +105,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 
     @property
     def is_spring(self) -> bool:
-        """Whether the force follows from the deflection of the moment, in the whole range."""
+        """Tell whether the present deflection alone gives the force, over the whole range."""
         if self.law.has_memory or self.law.has_mass:
             return False
         kinds = zip(self.law.keys, self.law.kinds, strict=True)
@@ -114,12 +114,12 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
 
     @property
     def is_losable(self) -> bool:
-        """Whether contact with it may be lost while others are touched at once."""
+        """Tell whether its contact may be lost while others are touched at the same time."""
         return self.is_spring and not self.preloaded
 
     @property
     def preload_range(self) -> tuple[Quantity, Quantity] | None:
-        """The lowest and highest deflection of the preload, if there is one."""
+        """Lowest and highest deflection of the preload, if there is a preload."""
         return None
 
     def linear_at_pivot(self) -> dict[str, Interval]:
@@ -297,7 +297,7 @@ EnvironmentSpec = Annotated[
     ElasticSpec | KelvinVoigtSpec | HandSpec | MaxwellSpec | KelvinBoltzmannSpec | HuntCrossleySpec,
     Discriminator("model"),
 ]
-# Laws that a spec may name: those of designs, and nonlinear ones.
+# Laws that a spec may name: laws of designs and nonlinear laws.
 ENVIRONMENT_LAWS: tuple[type[contact.AbstractContactLaw], ...] = tuple(
     law
     for model in get_args(get_args(EnvironmentSpec)[0])
@@ -306,7 +306,7 @@ ENVIRONMENT_LAWS: tuple[type[contact.AbstractContactLaw], ...] = tuple(
 )
 
 
-# Stiffness, damping and mass at the contact point, and what they are at the pivot.
+# Stiffness, damping and mass at the contact point, with their kinds at the pivot.
 _TURNED = (
     (kinds.LINEAR_STIFFNESS, kinds.STIFFNESS),
     (kinds.LINEAR_DAMPING, kinds.DAMPING),
@@ -324,5 +324,5 @@ def unit_at_pivot(quantity: Quantity) -> str:
 
 
 def is_translational(quantity: Quantity) -> bool:
-    """Tell whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
+    """Tell whether a stiffness, damping or mass is given at the contact point (N/m, N*s/m, kg)."""
     return any(linear.accepts(quantity.dimension) for linear, _ in _TURNED)

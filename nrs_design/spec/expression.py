@@ -36,12 +36,12 @@ class Affine:
     """An affine function of parameters; two are equal iff they are the same function."""
 
     constant: Fraction  # Value where all parameters are zero
-    # Parameter names with their factors, sorted by name, none of them zero.
+    # Parameter names with their nonzero factors, sorted by name.
     slopes: tuple[tuple[str, Fraction], ...] = ()
 
     @classmethod
     def of_parameter(cls, name: str) -> Affine:
-        """Return the function that is one parameter."""
+        """Return the function that equals one parameter."""
         return cls(Fraction(0), ((name, Fraction(1)),))
 
     @property
@@ -56,7 +56,7 @@ class Affine:
 
     @property
     def is_constant(self) -> bool:
-        """Whether it depends on no parameter."""
+        """Tell whether it depends on no parameter."""
         return not self.slopes
 
     def plus(self, other: Affine) -> Affine:

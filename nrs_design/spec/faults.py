@@ -63,7 +63,7 @@ def as_error(found: list[dict[str, Any]]) -> PydanticCustomError:
 def nearest(word: str, choices: Collection[str], called: Sequence[str] = ()) -> str | None:
     """Return the choice that a mistyped word means; `called` are choices with another such name."""
     alike = [choice for choice in choices if choice.lower() == word.lower()]
-    # What is mistyped rarely begins with another letter: `coupling` is no `sampling`.
+    # A mistyped word keeps its first letter: `coupling` is not `sampling`.
     begun = [choice for choice in choices if choice[:1].lower() == word[:1].lower()]
     near = alike or called or difflib.get_close_matches(word, begun, n=1)
     return near[0] if near else None

@@ -1,4 +1,4 @@
-"""What an interaction design may have besides the plainest, each with how a spec is asked for it.
+"""Features of an interaction design, each with the test that finds it in a spec.
 
 The plainest: impedance controllers on elastic tissue of one stiffness, touched one by one, one
 axis, continuous time, contact kept, arbitrary switching.
@@ -38,7 +38,7 @@ class SimultaneousContact(NamedTuple):
 
 
 def contacted_environments(spec: Spec) -> Iterator[ContactedEnvironment]:
-    """Yield what is touched, by name; a name that there is not is a fault of its own."""
+    """Yield the touched environments by name; an unknown name is another fault."""
     for name in sorted(spec.touched & spec.environments.keys()):
         yield ContactedEnvironment(name, spec.environments[name])
 
@@ -93,7 +93,7 @@ def _first(found: Iterable[T]) -> T | None:
 
 
 def _bleeding(spec: Spec) -> str | None:
-    """Return a controller with an integral that others leave to bleed."""
+    """Return a controller whose integral bleeds while others are active."""
     all_alike = len({c.is_leaky for c in spec.controllers.values()}) < 2
     return None if all_alike else _first(n for n, c in spec.controllers.items() if c.is_leaky)
 

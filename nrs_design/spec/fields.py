@@ -53,7 +53,7 @@ def _number(accepts: Callable[[Fraction], bool], expected: str) -> ParsedBy:
 
 
 def whole(low: int, high: int) -> ParsedBy:
-    """Return the marker of a field that is a whole number within bounds."""
+    """Return the marker of a field for a whole number within bounds."""
 
     def read(value: object) -> int:
         number = read_exact(value)
@@ -116,7 +116,7 @@ Label = Annotated[str, ParsedBy(_read_label, _LABEL)]
 
 
 def read_contact(value: object) -> Contact:
-    """Read the name of what is touched, or the names of all that is touched at once."""
+    """Read the name of an environment, or the names of all that are touched at the same time."""
     if not isinstance(value, list | tuple):
         return _read_label(value)
     names = tuple(map(_read_label, value))

@@ -1,4 +1,4 @@
-"""Design goals: what a design must achieve beside being stable."""
+"""Design goals, which a design must achieve beside stability."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel, at_most, optional
 from nrs_design.spec.quantity import Quantity
 
-# What only one type of controller has.
+# Goals of one type of controller alone.
 ONLY_FOR = {
     "max_impedance_error": "impedance",
     "min_transparency": "impedance",

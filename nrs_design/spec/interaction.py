@@ -17,7 +17,7 @@ class InteractionDesignSpec(AbstractInteractionSpec):
     warnings = INTERACTION_DOUBTS
 
     def combines(self, feature: Feature[AbstractInteractionSpec]) -> bool:
-        """Tell whether nothing that the spec has refuses a feature beside it."""
+        """Tell whether a feature combines with all features of the spec."""
         return not any(
             all(part is feature or part.find(self) for part in row.features)
             for row in COMBINATIONS

@@ -1,4 +1,4 @@
-"""What the parts of an interaction design must be for each other: one table."""
+"""Table of the checks between parts of an interaction design."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _too_late(spec: Spec) -> tuple[str, str, str, int] | None:
 
 
 def _apart(spec: Spec) -> Iterator[tuple[Location, tuple[str, str]]]:
-    """Yield controllers that do not touch what they are designed for, and that."""
+    """Yield controllers that do not touch the environment of their design, and that environment."""
     for name, controller in spec.controllers.items():
         names, own = touched_in(controller.contacts), controller.environment
         if own is not None and own not in names and spec.environments.keys() >= set(names):
@@ -77,7 +77,7 @@ def _freeable(spec: Spec, name: str) -> tuple[str, ...]:
 
 
 def _contact_mix(spec: Spec) -> tuple[str, ...]:
-    """Two kinds of controllers, and whose states others must say what to do with."""
+    """Two kinds of controllers, and the controllers whose idle states need a rule."""
     first_name, first = next(iter(spec.controllers.items()))
     for name, controller in spec.controllers.items():
         if controller.commands != first.commands:
@@ -89,20 +89,20 @@ def _contact_mix(spec: Spec) -> tuple[str, ...]:
 
 
 def _other_offset(spec: Spec) -> Iterator[tuple[str, ...]]:
-    """Yield controllers whose offset is not that of the first one that has one."""
+    """Yield controllers whose offset differs from that of the first controller with an offset."""
     offsets = [(name, c.own_offset) for name, c in spec.controllers.items() if c.own_offset]
     return ((*item, *offsets[0]) for item in offsets if item[1] != offsets[0][1])
 
 
 def _undriven(spec: Spec) -> Iterator[str]:
-    """Yield disturbances that act on samples, where there are none."""
+    """Yield disturbances of samples in a loop without samples."""
     given = () if spec.sampling is not None else spec.disturbances or ()
     return (key for key, value in given if key != "command" and value is not None)
 
 
 def _understated(spec: Spec) -> Iterator[tuple[str, str, str]]:
     """Yield a noise of readings that is below an error that the spec names elsewhere."""
-    # The key of the noise, where the error stands, and into how many parts it goes.
+    # The key of the noise, the place of the error, and its number of parts.
     named = (
         ("angle_noise", "disturbances", "encoder_step", 2),
         ("torque_noise", "disturbances", "force_step", 2),
@@ -118,7 +118,7 @@ def _understated(spec: Spec) -> Iterator[tuple[str, str, str]]:
 
 
 class _Goals(NamedTuple):
-    """Goals of all controllers or of one, and the laws that they are for."""
+    """Goals of all controllers or of one, and the laws with these goals."""
 
     it: GoalsSpec
     types: Collection[str]
@@ -177,7 +177,7 @@ _GOALS = (
 def _about_commands(spec: Spec) -> Iterator[tuple[Location, Quantity | None]]:
     """Yield what is about commands of the motor."""
     yield ("motion_loop", "derivative_gain"), getattr(spec.motion_loop, "derivative_gain", None)
-    # A robot that follows what is streamed has no such limit.
+    # A robot that follows streamed commands has no such limit.
     yield ("limits", "command"), None if spec.followed else spec.limits.command
     yield ("disturbances", "friction"), getattr(spec.disturbances, "friction", None)
     for name, run in spec.scenarios.items():
@@ -200,7 +200,7 @@ def _weightless(spec: Spec) -> tuple[str, object] | None:
 
 
 def _constant_over_samples(spec: Spec) -> tuple[str, str, str, str] | None:
-    """Return where a constant lateness is that begins and ends between other samples."""
+    """Return the place of a constant latency whose ends lie between different samples."""
     at = spec.constant_late
     if at is None or spec.sampling is None:
         return None

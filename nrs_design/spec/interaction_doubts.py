@@ -1,4 +1,4 @@
-"""What is allowed in an interaction design, and probably not meant: one table."""
+"""Table of settings of an interaction design that are allowed but probably not meant."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.quantity import is_less
 
-# So near given gains are to the loop that is asked for: less is rounding.
+# Largest distance of given gains from the desired loop that counts as rounding.
 _NEAR = 0.05
 # Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
 _HARDEST = 10
 
 
 def _doubted(spec: Spec) -> Iterator[tuple[Location, str]]:
-    """Yield what was identified with doubts that nobody accepts."""
+    """Yield identified values with doubts that are not accepted."""
     for at, item in spec.identified.items():
         if item.doubts and item.accept_doubt is None:
             yield (*at, "doubts"), at[-1]
@@ -69,7 +69,7 @@ def _left(spec: Spec) -> tuple[str, str] | None:
 
 
 def _other_loop(spec: Spec) -> tuple[str, str, str, str] | None:
-    """Return what the PD is asked for, damping ratio and settling time, and what given gains do."""
+    """Return the desired damping ratio and settling time of the PD, and those of given gains."""
     loop, motor = spec.motion_loop, spec.actuator
     if loop is None or motor is None or loop.derivative_gain is None or loop.zero is None:
         return None

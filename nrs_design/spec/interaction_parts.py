@@ -1,4 +1,4 @@
-"""What the spec of an interaction design says, part by part, without checks between the parts."""
+"""Parts of the spec of an interaction design, without the checks between them."""
 
 from __future__ import annotations
 
@@ -47,14 +47,14 @@ INTERFACES: Mapping[str, CommandInterface] = MappingProxyType(
     {f"{takes}_interface": takes for takes in CommandInterface}
 )
 DriveSpec = motion.ActuatorSpec | motion.FollowingSpec | motion.TorqueInterfaceSpec
-# What the motion controller is called where gains are listed.
+# Name of the motion controller in lists of gains.
 MOTION = "motion"
-# What stands in the place of a controller in names of modes, and what it is.
+# Words in the place of a controller in names of modes, with their meaning.
 NOT_CONTROLLERS = {
     MOTION: "the motion loop among the gains and the modes",
     MISS: "the modes of a missed deadline",
 }
-# What stands behind the contact in names of modes: ends of ranges, ages, and points.
+# Words after the contact in names of modes: ends of ranges, ages, and points.
 OF_CORNERS = re.compile(r"([A-Za-z]|tau|Km|(h|in)\d+)-(min|max)|(delay|flow|case)-\d+")
 
 
@@ -75,7 +75,7 @@ class FactorBounds(SpecModel, stronger="beside"):
 
 
 class FreeGainsSpec(SpecModel, stronger="beside"):
-    """Which gains of one controller are free, and how far."""
+    """The free gains of one controller with their bounds."""
 
     Kp: FactorBounds | None = optional("of the motion loop, or of the force")
     Kd: FactorBounds | None = optional("of the motion loop")
@@ -108,7 +108,7 @@ class DesignSpec(SpecModel, stronger="beside"):
 
 
 class AbstractInteractionSpec(SpecModel, stronger="unknown"):
-    """The keys of such a spec, and what follows from them."""
+    """The keys of the spec of an interaction design, and values that follow from them."""
 
     kind: Literal["interaction-design"] = required("what this file describes")
     name: Name = required("short name: lower-case letters, digits, '.', '_', '-'", "neither")
@@ -172,7 +172,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
         if value != MODE_LOGIC or not {"controllers", "environments", "mode_logic"} <= set(
             info.data
         ):
-            # Where one of them is faulty, that is reported instead.
+            # A faulty one is reported instead.
             return "arbitrary" if value == MODE_LOGIC else value
         if info.data["mode_logic"] is None:
             raise fault(
@@ -183,7 +183,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
 
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
-        """What may have been identified from records, by the keys that lead to it."""
+        """Parts that may be identified from records, by their keys."""
         parts: dict[tuple[str, ...], IdentifiedSpec] = {
             (key,): drive for key, drive in self.drives.items()
         }
@@ -206,13 +206,13 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
 
     @property
     def offset(self) -> Offset:
-        """Where the offset of the force controllers is taken from; they have one in common."""
+        """The common source of the offset of all force controllers."""
         offsets = (controller.own_offset for controller in self.controllers.values())
         return next((offset for offset in offsets if offset is not None), "none")
 
     @property
     def drives(self) -> dict[str, DriveSpec]:
-        """What turns commands into motion, by its key: just one in a spec without faults."""
+        """The drive, by its key: exactly one in a spec without faults."""
         found = {key: getattr(self, key) for key in ("actuator", *INTERFACES)}
         return {key: drive for key, drive in found.items() if drive is not None}
 
@@ -244,7 +244,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
 
     @property
     def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
-        """The numbers of what is touched and of the drive, by the keys that lead to them."""
+        """Ranged numbers of environments and drive, by their keys."""
         found: dict[tuple[str, ...], RangedQuantity] = {
             ("environments", name, key): quantity
             for name in sorted(self.touched & self.environments.keys())
@@ -266,7 +266,7 @@ class AbstractInteractionSpec(SpecModel, stronger="unknown"):
 
     @property
     def late_times(self) -> dict[tuple[str, str], Times]:
-        """How late commands are, by the keys that say it."""
+        """Latencies of commands, by their keys."""
         found = {(name, "dead_time"): drive.dead_time for name, drive in self.drives.items()}
         found |= {("sampling", "latency"): None if self.sampling is None else self.sampling.latency}
         return {at: times for at, times in found.items() if times is not None}

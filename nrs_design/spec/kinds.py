@@ -1,4 +1,4 @@
-"""The kinds of quantities that a spec holds, with the confusions that are known for each."""
+"""Kinds of quantities in a spec, with the known confusions of each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ON_A_SLIDE = "the axis is prismatic: "
 
 
 def _kind(key: str) -> QuantityKind:
-    """Return a kind of the table, and what it is on an axis that slides."""
+    """Return a kind of the table, and the corresponding kind on a sliding axis."""
     row = _TABLE[key]
     name, units, example = row["kind"]
     filled = (unit.format(command) for unit in units.split() for command in COMMAND_UNITS)
@@ -82,6 +82,6 @@ COMMAND = QuantityKind(
         dict.fromkeys(("m/s", "m"), _DRIVERS_OWN),
     ),
 )
-# What any drive takes: a motor, or an interface to velocities or positions.
+# Commands of any drive: a motor, or an interface to velocities or positions.
 DRIVE_COMMAND = _kind("DRIVE_COMMAND")
 TORQUE_GRADIENT = _kind("TORQUE_GRADIENT")

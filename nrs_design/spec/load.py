@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
     Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-# Where the model of each kind is.
+# Module of the model of each kind.
 _MODELS = {
     "interaction-design": ("interaction", "InteractionDesignSpec"),
     "switched-system": ("switched_system", "SwitchedSystemSpec"),
@@ -58,10 +58,10 @@ SPEC_KINDS = tuple(_MODELS)
 class LoadedSpec:
     """A spec together with the file that it came from."""
 
-    path: Path  # The file, as it was named
+    path: Path  # The file, as the user named it
     sha256: str  # Hash of what the file says, in hexadecimal; see `hash_meaning`
     text: str  # The file's text
-    spec: Spec  # What it says
+    spec: Spec  # The validated content
     # The text as a tree, for positions; parsed once more where it is not given.
     parsed: Node | None = field(default=None, repr=False, compare=False)
 
@@ -76,7 +76,7 @@ class LoadedSpec:
         return self.parsed or parse_document(self.text, self.path)
 
     def place(self, *at: str | int) -> Position:
-        """Line and column of a key or an item, or of what holds it if it is not written out."""
+        """Line and column of a key or item, or of its parent if the file does not hold it."""
         places = [place for place, _ in steps_to(self.root, at)]
         return places[-1] if places else self.root.position
 
@@ -114,7 +114,7 @@ def axes_at(path: Path) -> tuple[Path, ...]:
 
 
 def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...], TaskSpaceSpec | None]:
-    """Return a document, the faults of its syntax, and what it says if it holds several axes."""
+    """Return a document, its syntax faults, and its axes if it holds several."""
     root, syntax = parse_with_faults(text, file)
     root = as_read(root, file)
     axes = _validated(model_of(KIND), root, syntax, file) if is_task_space(root) else None
@@ -122,7 +122,7 @@ def _document(text: str, file: Path) -> tuple[Node, tuple[Fault, ...], TaskSpace
 
 
 def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:
-    """Return what a spec would be if its file said what a changed document says.
+    """Return the spec of a file that held a changed document.
 
     See `nrs_design.spec.edits.changed`; a `SpecError` if that is no valid spec.
     """
@@ -196,7 +196,7 @@ def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | N
 
 
 def _kind_of(root: Node, path: Path | None, syntax: tuple[Fault, ...]) -> str:
-    """Return the kind of a spec, without which nothing else in the file can be judged."""
+    """Return the kind of a spec, which decides how the rest of the file is read."""
 
     def refuse(message: str, remedy: str, node: Node) -> SpecError:
         place = node.position

@@ -1,4 +1,4 @@
-"""How many steps of a discrete loop may miss their deadline: a rule, and what it allows.
+"""Rules of missed deadlines in a discrete loop, and the words that they allow.
 
 Such loops are called weakly hard (Bernat, Burns and Llamosi 2001).
 """
@@ -18,7 +18,7 @@ MOST_STEPS = 1000
 MOST_STATES = 1000
 _Count = Annotated[int, whole(1, MOST_STEPS)]
 
-# What modes are called whose deadline is missed.
+# Word for a missed deadline in names of modes.
 MISS = "miss"
 
 
@@ -67,7 +67,7 @@ class MissRuleSpec(SpecModel, stronger="larger"):
 
     @property
     def window(self) -> tuple[int, int]:
-        """How many misses there are at most, in how many steps."""
+        """Return the largest number of misses, and in how many steps."""
         if self.consecutive is not None:
             return self.consecutive, self.consecutive + 1
         assert self.at_most is not None
@@ -76,7 +76,7 @@ class MissRuleSpec(SpecModel, stronger="larger"):
 
     @property
     def states(self) -> int:
-        """How many states its automaton has."""
+        """Return the number of states of its automaton."""
         most, of = self.window
         return comb(of, most)
 
@@ -100,7 +100,7 @@ class MissesSpec(MissRuleSpec):
 
 
 class DeadlinesSpec(MissRuleSpec):
-    """How many periods of a sampled loop may miss their deadline, and what happens in these.
+    """The rule of missed deadlines of a sampled loop, and what the robot does in missed periods.
 
     A job that misses is dropped (kill): the law keeps its states, and there is no new command. The
     drive is held or zeroed meanwhile (Maggio et al., Control-System Stability under Consecutive
@@ -134,9 +134,9 @@ class DeadlinesSpec(MissRuleSpec):
 
 @dataclass(frozen=True, slots=True)
 class MissAutomaton:
-    """The words of hits and misses that a rule allows, by the fewest states; any may be first."""
+    """Minimal automaton of the words of hits and misses under a rule; any state may be first."""
 
-    # By state: where a hit and where a miss lead; None where no miss is allowed.
+    # For each state, the next states after a hit and after a miss; None if no miss is allowed.
     hit: tuple[int, ...]
     miss: tuple[int | None, ...]
 

@@ -25,7 +25,7 @@ Unsaid = Literal["nothing", "most", "other"]
 
 
 class Declared(NamedTuple):
-    """What a field says of how its values compare, or a model of all its fields."""
+    """The order of the values of a field, or the default order of a model's fields."""
 
     # Words in a tuple go from the least on; None is where nothing is said.
     stronger: Stronger | tuple[object, ...] | None = None
@@ -46,7 +46,7 @@ class SpecModel(BaseModel):
 
     # Of fields that say nothing of it themselves: what the first line of a class says.
     declared: ClassVar[Declared] = Declared()
-    # What must not be, whatever its fields are for themselves.
+    # Checks across the fields of the model.
     checks: ClassVar[tuple[Row[Any], ...]] = ()
     # What is allowed, and probably not meant.
     warnings: ClassVar[tuple[Row[Any], ...]] = ()
@@ -76,12 +76,12 @@ def optional(
     stronger: Stronger | tuple[object, ...] | None = None,
     unsaid: Unsaid | None = None,
 ) -> Any:
-    """Return a field that a spec may leave out, and what it is then."""
+    """Return an optional field with its default."""
     return _declaring(Declared(stronger, unsaid), Field(default=default, description=description))
 
 
 def _declaring(declared: Declared, field: Any) -> Any:
-    # Where pydantic keeps what stands beside a type.
+    # Place where pydantic keeps the metadata of a type.
     field.metadata.append(declared)
     return field
 
@@ -102,7 +102,7 @@ def declared_in(model: type[SpecModel]) -> dict[str, Declared]:
 
 
 class ParsedBy:
-    """Marks a field whose value is what a function makes of the text, or of the data.
+    """Marks a field whose value a function reads from the text or from the data.
 
     Errors of the function are those of the field. Pydantic's own marker would also form the schema
     of the type that comes out, for writing it, which takes longer than to validate a spec; nobody

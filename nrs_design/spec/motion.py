@@ -194,7 +194,7 @@ class MotionLoopSpec(SpecModel, stronger="neither"):
     transfer_function: TransferFunctionSpec | None = optional("closed loop G instead, no unit")
 
 
-# How the name of an output begins that is held against `limits: {command: ...}`.
+# Prefix of the names of outputs that `limits: {command: ...}` bounds.
 MOTOR_COMMAND = "motor command"
 
 

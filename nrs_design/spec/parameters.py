@@ -1,4 +1,4 @@
-"""Numbers that lie in ranges: what is asked of all of them, and parameters of switched systems."""
+"""Checks of numbers in ranges, and parameters of switched systems."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def range_around(description: str) -> Any:
     return Field(default_factory=lambda data: (data.get("nominal"),) * 2, description=description)
 
 
-# Of a nominal value and a range around it.
+# Checks of a nominal value and a range around it.
 RANGE_CHECKS: tuple[Row[Any], ...] = (
     Row("range", _mixed, "nominal and range have different units", "use one unit"),
     ORDERED_RANGE,
@@ -86,7 +86,7 @@ RANGE_CHECKS: tuple[Row[Any], ...] = (
         "widen the range or correct the nominal value",
     ),
 )
-# Of a smallest and a largest value.
+# Checks of a smallest and a largest value.
 BOUND_CHECKS: tuple[Row[Any], ...] = (
     Row("max", _crossed, "max {0} is below min {1}", "swap them"),
 )
@@ -97,7 +97,7 @@ MAX_PARAMETERS = 16
 # Beyond this a number is a slip of the pen, and products of such numbers leave the floats.
 LARGEST = Fraction(10) ** 30
 
-# Where a number is expected, these are read as attempts at one.
+# Texts that are read as attempts at a number.
 _RESERVED = frozenset(["nan", "inf", "infinity", "true", "false", "yes", "no", "on", "off", "null"])
 
 

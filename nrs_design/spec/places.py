@@ -1,4 +1,4 @@
-"""From what validation reports to faults with their place in the file and the remedy."""
+"""Turns the reports of validation into faults with place and remedy."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from nrs_design.spec.model import ParsedBy
 
 # Below a choice between models, validation inserts the tag of the chosen one.
 _CHOICES = {"environments": "model", "controllers": "type"}
-# What others call these.
+# Other names of these keys.
 _OTHER_NAMES = {
     "admittance": "impedance",
     "spring": "elastic",
     "voigt": "kelvin-voigt",
     "standard-linear-solid": "kelvin-boltzmann",
 }
-# Other words for keys, in small letters: what similar letters do not tell.
+# Synonyms of keys, in small letters, which similar letters do not reveal.
 _OTHER_KEYS = {
     key: frozenset(words.split())
     for key, words in {
@@ -44,15 +44,15 @@ _OTHER_KEYS = {
         "gain": "k factor",
     }.items()
 }
-# What `identify` writes into a section: it is listed after what people write.
+# Keys that `identify` writes into a section: listed after the keys that people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
-# How deep that tag is: below a name.
+# Depth of that tag: below a name.
 _DEPTH = 2
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
 
 
 def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return what validation reports as faults of the file, each once with its place, in order."""
+    """Return the reports of validation as faults of the file, each once, in order of place."""
     resolved = {
         _resolve(details | {"ctx": context}, model, root)
         for details in _genuine(error)
@@ -90,7 +90,7 @@ def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> boo
 
 
 def _of_keys(word: str, fields: Mapping[str, FieldInfo | None]) -> str:
-    """Suggest the key that is meant, by another word for it or one level deeper; list the keys."""
+    """Suggest the intended key, by a synonym or one level deeper; list the keys."""
     keys = sorted(fields, key=_IDENTIFIED.__contains__)
     called = [key for key in keys if word.lower() in _OTHER_KEYS.get(key, ())]
     listing = did_you_mean(word, keys, "keys here are", called)
@@ -103,7 +103,7 @@ def _of_keys(word: str, fields: Mapping[str, FieldInfo | None]) -> str:
 
 
 def _keys_below(*parts: Any) -> Iterator[str]:
-    """Yield the keys of what a field may be, in any form in which it may be written."""
+    """Yield the keys of every form in which a field may be written."""
     for part in parts:
         if isinstance(part, ParsedBy):
             for form in (part.schema or {}).get("anyOf", ()):
@@ -130,13 +130,13 @@ def _without_tag(location: Location) -> Location:
 
 
 def place_of(root: Node, location: Location, at_key: bool) -> Position:
-    """Position of the node, or of the nearest one above it that the file holds.
+    """Return the position of the node, or of its nearest parent in the file.
 
     `at_key`: that of the key, not of its value.
     """
     steps = [*steps_to(root, location)]
     key, node = steps[-1] if steps else (root.position, root)
-    # What starts below its key, a block mapping or list, is best shown by the key.
+    # A block mapping or list starts below its key: the key shows it best.
     below = node.position.line > key.line
     return key if below or (at_key and len(steps) == len(location)) else node.position
 
@@ -176,7 +176,7 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         return f"{where}: must not be empty", "add at least one entry"
     if kind == "too_long":
         return f"{where}: more than {context['max_length']} entries are not read", "remove some"
-    # What a type says in its own words.
+    # The message of the type itself.
     message = str(context["error"]) if kind == "value_error" else details["msg"]
     return f"{where}: {message}", "see `nrs-design schema` for what belongs here"
 

@@ -27,7 +27,7 @@ _TABLE = Path(__file__).with_name("sizes.toml")
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """What sizes of a quantity are plausible."""
+    """Plausible sizes of a quantity."""
 
     unit: str  # SI unit of the range, which tells the quantity
     # low, high: least and largest size; zero is never doubted, and signs do not count.
@@ -43,7 +43,7 @@ class Size:
         return value == 0 or self.low <= abs(value) <= self.high
 
     def doubt(self, value: float, number: str, unit: str) -> str | None:
-        """Ask about a value, in SI, that is not plausible; None for one that is."""
+        """Return the question about an implausible value in SI; None for a plausible one."""
         if self.holds(value):
             return None
         written = float(parse_unit(unit).factor) * math.pi ** parse_unit(unit).pi_power
@@ -79,7 +79,7 @@ def size_of(field: str, dimension: tuple[int, ...]) -> Size | None:
 
 
 def doubt_size(field: str, value: float, unit: str, number: str | None = None) -> str | None:
-    """Ask about a size in SI that is no spec's, such as one that was identified; None if plausible.
+    """Return the question about an implausible identified size in SI; None if it is plausible.
 
     `field` is the key that it has, or would have, in a spec.
     """
@@ -97,7 +97,7 @@ def doubt_sizes(spec: SpecModel) -> Iterator[_Asked]:
 
 
 def unusual(part: SpecModel) -> tuple[str, ...]:
-    """Return what is asked about a part of a spec, accepted or not."""
+    """Return the questions about a part of a spec, accepted or not."""
     return tuple(text for _, text in _once(_parts(part, (), "")))
 
 
@@ -139,7 +139,7 @@ class Doubt:
     """Something that is allowed, and probably not meant."""
 
     at: tuple[str, ...]  # Keys that lead to it in the spec
-    message: str  # What is doubtful; one line
+    message: str  # The doubt in one line
     # A value of the design over its limit: how useless it makes the design; 0 where it has none.
     beyond: float = 0.0
 
@@ -156,5 +156,5 @@ def doubt_spec(spec: SpecModel) -> Iterator[Doubt]:
 
 
 def worst_first(doubts: Iterable[Doubt]) -> tuple[Doubt, ...]:
-    """Return doubts by how far they are beyond a limit, else in their order."""
+    """Return doubts sorted by their distance beyond a limit, others in their order."""
     return tuple(sorted(doubts, key=lambda doubt: -doubt.beyond))

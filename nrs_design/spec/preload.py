@@ -87,7 +87,7 @@ def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fractio
     ``(r u)^q <= base^p``, and ``(r + 1) u`` the upper one, unless the lower one is the power. The
     base is positive, else a ValueError; numbers have as many digits as q is large.
     """
-    # To load it takes longer than to read a spec, and few have such powers.
+    # Loading it takes longer than reading a spec, and few specs have such powers.
     from flint import fmpz
 
     if base <= 0:

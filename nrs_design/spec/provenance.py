@@ -1,4 +1,4 @@
-"""Where an identified value comes from, and what is doubtful about it."""
+"""Sources and doubts of an identified value."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ COVERS: Mapping[Coverage, str] = {
     "tolerance": "95 % of all such specimens with 95 % confidence",
     "prediction": "the next record with 95 % probability",
 }
-# Of a motor, all whose records are fitted at once.
+# Sources of a motor, whose records are all fitted at once.
 MOTOR_COVERS: Mapping[Coverage, str] = {
     **COVERS,
     "confidence": "gain and time constant of the recorded motor, both at once with 95 % confidence",
@@ -46,7 +46,7 @@ Provenance = Annotated[tuple[ProvenanceSpec, ...], Field(max_length=MAX_SOURCES)
 
 
 class IdentifiedSpec(SpecModel):
-    """What `nrs-design identify --write` notes down beside the values."""
+    """Notes that `nrs-design identify --write` adds to the values."""
 
     provenance: Provenance = optional(
         "data files that the values were identified from", (), stronger="neither"
@@ -105,7 +105,7 @@ class IdentifiedRangesSpec(IdentifiedSpec):
     )
 
     def values_id(self) -> str:
-        """Return the SHA-256 of what identification writes, whatever the layout of the text."""
+        """Return the SHA-256 of the identified values, independent of the layout of the text."""
         names = [name for name in type(self).model_fields if name not in NOT_IDENTIFIED]
         canonical = json.dumps({name: _plain(getattr(self, name)) for name in names})
         return hashlib.sha256(canonical.encode()).hexdigest()

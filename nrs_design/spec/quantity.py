@@ -1,4 +1,4 @@
-"""Quantities: a number with its unit, as written, and what it is in SI."""
+"""Quantities: a number with its unit, as written and in SI."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, guess_unit, has_unknown, parse_unit
 
-# Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
+# Numbers beyond these are slips, and their products leave the floats.
 SMALLEST = 1e-30
 LARGEST = 1e30
 
@@ -87,7 +87,7 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class QuantityKind:
-    """What a field measures, and in which units it may be written."""
+    """The dimension of a field, and its units."""
 
     name: str  # For messages, such as ``a rotational stiffness``
     # One unit for each accepted dimension; the first is the SI unit that is shown.
@@ -99,7 +99,7 @@ class QuantityKind:
     # Whether the SI value must be rational, as everything that enters a proof; then units with a
     # factor of pi (``deg``, ``Hz``) are refused.
     rational: bool = True
-    # What it is on an axis that slides; None where that does not matter.
+    # The kind on a sliding axis; None if it is the same.
     sliding: QuantityKind | None = None
 
     def on(self, axis: AxisType) -> QuantityKind:
@@ -120,7 +120,7 @@ class QuantityKind:
         return next(unit for unit in self.units if parse_unit(unit).dimension == dimension)
 
     def advice(self, value: str, dimension: tuple[int, ...]) -> str:
-        """Say what to write instead of a quantity with the wrong dimension."""
+        """Return the remedy for a quantity with the wrong dimension."""
         for unit, advice in self.confusions.items():
             if parse_unit(unit).dimension == dimension:
                 return advice.format(value=value)
@@ -135,7 +135,7 @@ class QuantityKind:
 
     @property
     def is_about_commands(self) -> bool:
-        """Whether its unit depends on what the motor takes."""
+        """Tell whether its unit depends on the command of the motor."""
         return all(any(command in unit for unit in self.units) for command in COMMAND_UNITS)
 
 

@@ -77,7 +77,7 @@ LARGEST: Literal["largest"] = "largest"
 
 
 def _or_largest(kind: QuantityKind) -> ParsedBy:
-    """Read both in one place, so that what is neither is one fault."""
+    """Read both in one place, so that a text that is neither is one fault."""
 
     def read(value: object) -> Quantity | Literal["largest"]:
         if value == LARGEST:
@@ -195,7 +195,7 @@ def _ranged(kind: QuantityKind, *, positive: bool = True) -> ExpandedBy:
 
 
 def _read_keys(value: object, readers: Mapping[str, Callable[..., object]]) -> object:
-    """Read the entries that are quantities; what else is wrong is left to the model."""
+    """Read the entries that are quantities; the model reports other faults."""
     if not isinstance(value, dict):
         return value
     reads = {key: partial(readers[key], value[key], key) for key in value if key in readers}
@@ -218,7 +218,7 @@ class Times(NamedTuple):
 
     @property
     def is_constant(self) -> bool:
-        """Whether it has a range, and one value there that does not change."""
+        """Tell whether it has a range, and is constant within it."""
         return not self.varies and is_less(self.shortest, self.longest)
 
 
@@ -226,7 +226,7 @@ _CONSTANT_TIMES = "write `{range: [0.3 ms, 0.8 ms], varies: false}`"
 
 
 def _read_times(value: object) -> Times:
-    """Read one time, or the shortest and the longest, which may be those of a constant one."""
+    """Read one time, or the shortest and the longest time; a time in between may be constant."""
     if not isinstance(value, dict):
         return _between(value)
     if not {"range"} <= value.keys() <= {"range", "varies"}:
@@ -266,7 +266,7 @@ _RANGED_TIMES = keys_schema(
     },
     "range",
 )
-# One time for both ends, or a range, in which it may be constant.
+# One time for both ends, or a range, within which it may be constant.
 TimeRange = Annotated[
     Times,
     ParsedBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES, _RANGED_TIMES]}),

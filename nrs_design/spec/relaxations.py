@@ -1,4 +1,4 @@
-"""What each line of a spec could ask for instead, so that less has to be proved.
+"""Relaxations of single lines of a spec, after which less has to be proved.
 
 Every change is one that a person could write into the file: an end of a range nearer to the nominal
 value, a shorter delay, a dwell time, a key left out. Whether the result is a valid spec is for
@@ -27,7 +27,7 @@ from nrs_design.spec.units import parse_unit
 
 # Steps from the nominal value to an end of a range: six halvings.
 PARTS = 64
-# Steps from the longest dwell time that is tried down to the shortest, so many to a factor of two.
+# Number of steps from the longest tried dwell time down to the shortest, and per factor of two.
 DWELLS = 256
 PER_OCTAVE = 16
 # The longest one over the time in which the slowest mode decays to 1/e, at least; or over the one
@@ -38,7 +38,7 @@ DWELL_DIGITS = 3
 MOST_STEPS = 32
 UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without"
 
-# By how much the damping of all controllers rises, and their force gains fall; mildest first.
+# Factors by which the damping of all controllers rises and their force gains fall; mildest first.
 CALMER = ((2, 1), (1, 2), (2, 2), (4, 2), (2, 4), (4, 4))
 GIVEN_GAINS = ("Bt", "proportional_gain", "integral_gain")
 
@@ -49,8 +49,8 @@ class RelaxationSteps:
 
     word: str  # Before what is proved: up to, down to, within, with, without
     value_at: Callable[[int], Data | None]  # Value in the spec at a step; None: the key is removed
-    label_at: Callable[[int], str]  # That value in words
-    requested: str  # The declared value in words
+    label_at: Callable[[int], str]  # The relaxed value in words
+    requested: str  # Declared value in words
     size: int = 0  # Where nothing lies between, 0
 
 
@@ -59,7 +59,7 @@ class SpecRelaxation:
     """A line of a spec, and its possible relaxations."""
 
     at: Keys  # The place
-    weakest: RelaxationSteps  # At step 0, the line asks for the least
+    weakest: RelaxationSteps  # Step 0 asks for the least
     # Ask for more than that at 0 already; the first one that is proved there is looked at further.
     alternatives: tuple[RelaxationSteps, ...] = ()
     # Whether what is proved then is about another loop, or takes more for granted, rather than
@@ -72,7 +72,7 @@ class SpecRelaxation:
 
 
 def iterate_relaxations(loaded: LoadedSpec, slowest: float | None) -> Iterator[SpecRelaxation]:
-    """Yield how single lines of a spec could ask for less, the mildest first.
+    """Yield the relaxations of single lines of a spec, the mildest first.
 
     `slowest` is the decay rate of the slowest mode in 1/s: it says which dwell times are tried.
     """
@@ -125,7 +125,7 @@ def _of_interaction(
 
 
 def calmer(loaded: LoadedSpec, more: int, less: int) -> tuple[SpecRelaxation, ...]:
-    """Return the gains that a spec gives, with so many times the damping, and a part of the others.
+    """Return the given gains of a spec with the damping multiplied and the other gains reduced.
 
     They are changed together: one controller alone seldom keeps the others from being proved.
     """
@@ -153,7 +153,7 @@ def _scaled(given: Data, factor: Fraction) -> Data:
 
 
 def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
-    """Yield what may be left out whole."""
+    """Yield the parts that may be removed as a whole."""
     for name, controller in spec.controllers.items():
         yield from _single(("controllers", name, "contacts"), len(controller.contacts))
     if len(spec.controllers) > 1:
@@ -164,7 +164,7 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
     if spec.idle_states is not None and spec.idle_states.reset:
         yield _without(("idle_states", "reset"), changes_model=True)
     if spec.sensor is not None and spec.sensor.filter is not None:
-        # A sensor of which nothing else is said goes whole.
+        # A sensor without other keys is removed as a whole.
         alone = spec.sensor.model_fields_set == {"filter"}
         yield _without(("sensor",) if alone else ("sensor", "filter"), changes_model=True)
     for key in ("outer_period", "misses"):
@@ -247,7 +247,7 @@ def _number(text: str, unit_of: str = "") -> Fraction:
 
 
 def _times(root: Node, at: Keys) -> Iterator[SpecRelaxation]:
-    """Yield a range of times, if one is written: what is asked for least is the shortest."""
+    """Yield a written range of times: the shortest time asks for the least."""
     part = _said(root, at)
     if isinstance(part, dict):
         at, part = (*at, "range"), part.get("range")
@@ -262,7 +262,8 @@ def _delay(least: int, most: int) -> Iterator[SpecRelaxation]:
     at: Keys = ("sampling", "delay")
     asked = counted(most, "sample")
     if least < most:
-        # Firmware cannot make a sample newer, but hold fresh ones back until they are as old.
+        # Firmware cannot make a sample newer, but it can hold fresh samples back to the oldest
+        # age.
         held = f"{asked} always, fresh ones held back"
         yield SpecRelaxation(at, RelaxationSteps(WITH, lambda _: str(most), lambda _: held, asked))
         form = RelaxationSteps(
@@ -281,7 +282,7 @@ def _delay(least: int, most: int) -> Iterator[SpecRelaxation]:
 def _dwell(
     arbitrary: bool, root: Node, slowest: float | None, discrete: bool
 ) -> Iterator[SpecRelaxation]:
-    """Yield a dwell time where there is none, or a longer one than the one for all modes."""
+    """Yield a dwell time for a spec without one, or a longer one for all modes."""
     at: Keys = ("switching",)
     given = _said(root, (*at, "dwell_time"))
     if arbitrary and _said(root, at) == "arbitrary":
@@ -317,6 +318,6 @@ def _seconds_at(longest: Fraction, step: int) -> str:
 
 
 def _said(root: Node, at: Keys) -> Data | None:
-    """Return what a document says at a place, or None if nothing."""
+    """Return the value of a document at a place, or None without one."""
     node = node_at(root, at)
     return None if node is None else to_data(node)

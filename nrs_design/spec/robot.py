@@ -142,7 +142,7 @@ class TaskLimitsSpec(SpecModel, stronger="unknown"):
 
 
 class DriveSpec(SpecModel, stronger="neither"):
-    """Motor with driver, gearhead, capstan and encoder; the same for all three joints."""
+    """Motor with driver, gearhead, capstan and encoder, equal for all three joints."""
 
     gain: field.ActuatorGain = required("Km of the gearhead's output in rad/s/rpm (thesis 4.9)")
     time_constant: field.Duration = required("mechanical time constant in s (thesis 4.9)")
@@ -203,7 +203,7 @@ class BalanceSpec(SpecModel, stronger="neither"):
 class RobotSpec(SpecModel, stronger="unknown"):
     """A parallel robot that moves an endoscope about a pivot point (thesis 3 and 4)."""
 
-    # Nothing is certified about it, so no range is covered.
+    # No certificate is about it, so it has no ranges.
     has_ranges: ClassVar[bool] = False
 
     kind: Literal["robot"] = required("what this file describes")

@@ -104,7 +104,7 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
 
     @property
     def unsteady(self) -> Fraction:
-        """By how much a period may be longer or shorter than the others, in s."""
+        """Return the largest deviation of a period from the nominal one, in s."""
         return Fraction(0) if self.jitter is None else self.jitter.exact
 
     @property
@@ -143,7 +143,7 @@ class SamplingSpec(IdentifiedSpec, stronger="farther"):
 
 
 class DisturbancesSpec(SpecModel, stronger="larger"):
-    """Bounds on what acts on the loop from outside; what is left out is zero."""
+    """Bounds on disturbances from outside; a missing key is zero."""
 
     command: field.AngularVelocity | None = optional("largest velocity command in rad/s")
     friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")

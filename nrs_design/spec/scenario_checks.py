@@ -1,4 +1,4 @@
-"""Whether mode logic and scenarios fit the rest of their spec: two tables."""
+"""Two tables of checks that mode logic and scenarios fit the rest of their spec."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _too_fast(spec: Spec) -> Iterator[tuple[Location, tuple[float, str]]]:
 
 
 def _without_logic(spec: Spec) -> Iterator[tuple[Location, bool]]:
-    """Yield runs that the mode logic controls, where there is none."""
+    """Yield runs under the mode logic in a spec without mode logic."""
     for at, run in _runs(spec):
         if run.control is not None and run.control.logic is not None:
             yield (*at, "control", "logic"), spec.mode_logic is None
@@ -93,7 +93,7 @@ SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
 
 
 def _kept(spec: Spec) -> SwitchingSpec:
-    """Return the rules that the mode logic keeps; none without one, or where it does not fit."""
+    """Return the rules that the mode logic keeps; none without mode logic, or if it is faulty."""
     logic = spec.mode_logic
     fits = logic is not None and spec.controllers.keys() >= {*logic.controllers}
     return logic.rules() if logic is not None and fits else SwitchingSpec()

@@ -1,4 +1,4 @@
-"""Scenarios of a spec: what the surgeon commands, where tissue is, and who is in control when."""
+"""Scenarios of a spec: commands of the surgeon, places of tissue, and active controllers."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ class ControlSpec(SpecModel, stronger="unknown", unsaid="other"):
 
 
 class ErrorsSpec(SpecModel, stronger="larger"):
-    """What acts on the sampled loop and its sensors; what is left out is zero."""
+    """Disturbances of the sampled loop and errors of its sensors; a missing key is zero."""
 
     friction: field.DriveCommand | None = optional("Coulomb friction as a command, such as rpm")
     encoder_step: field.Angle | None = optional("resolution of the measured joint angle in rad")
@@ -177,7 +177,7 @@ class ErrorsSpec(SpecModel, stronger="larger"):
 
 
 class ScenarioLimitsSpec(SpecModel, stronger="smaller"):
-    """What the gate wants a simulated run to keep; what is left out is not looked at."""
+    """Limits of a simulated run for the gate; a missing key is not checked."""
 
     torque: field.Torque | None = optional("largest torque of the tissue in N*m")
     deflection: field.Angle | None = optional("largest depth below a surface in rad")

@@ -10,7 +10,7 @@ from nrs_design.printable import json_text
 from nrs_design.spec.load import SPEC_KINDS, model_of
 
 DIALECT = "http://json-schema.org/draft-07/schema#"
-# What only Python knows of a model: class names, null for an absent key, defaults that are objects.
+# Facts for Python alone: class names, null for an absent key, defaults that are objects.
 _INTERNAL = ("title", "default", "discriminator")
 
 
@@ -90,7 +90,7 @@ def _required_value(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def _described_reference(schema: dict[str, Any]) -> dict[str, Any]:
-    """Wrap a reference that has a description: draft-07 ignores what stands beside ``$ref``."""
+    """Wrap a reference with a description: draft-07 ignores the siblings of ``$ref``."""
     if "$ref" not in schema or len(schema) == 1:
         return schema
     rest = {key: value for key, value in schema.items() if key != "$ref"}

@@ -16,7 +16,7 @@ Surface = Literal["fixed", "free", "touched"]
 
 
 class MonitoringSpec(SpecModel, stronger="unknown"):
-    """Bounds on readings, not standard deviations: of each sample, whatever the others are.
+    """Bounds on each reading, independent of the others; not standard deviations.
 
     No proof depends on them. `export --format monitor` and `audit` test the stiffness within them.
     """
@@ -62,7 +62,7 @@ class FilterSpec(SpecModel, stronger="neither"):
 
 
 class SensorSpec(SpecModel, stronger="larger"):
-    """The force signal: what filters it, and how far it may be off.
+    """The force signal: its filter, and bounds on its errors.
 
     Errors that last move the robot in free motion, as an admittance integrates them: the creep.
     """
@@ -84,5 +84,5 @@ class SensorSpec(SpecModel, stronger="larger"):
 
     @property
     def has_errors(self) -> bool:
-        """Whether it says of an error how large it is."""
+        """Tell whether it bounds an error."""
         return self.bias is not None or self.resolution is not None

@@ -1,4 +1,4 @@
-"""In which places a spec asks for less, or takes more for granted, than another one did.
+"""Places in which a spec asks for less, or assumes more, than an earlier one.
 
 The two are compared as they are read: field by field, defaults filled in, however it is written.
 Every field declares which of two values asks for more (`nrs_design.spec.model.Stronger`). What
@@ -36,9 +36,8 @@ class Change:
     """One place where two specs differ."""
 
     key_path: Place  # Keys that lead to it
-    message: str  # What has changed; one line
-    # Whether less is asked for, or more taken for granted, than before. Otherwise, it is stronger,
-    # or neither.
+    message: str  # The change in one line
+    # True: less is asked for, or more is assumed, than before. False: stronger, or neither.
     weaker: bool
 
 
@@ -68,7 +67,7 @@ def _written_out(said: SpecModel, other: SpecModel) -> SpecModel:
 
 
 def _in_order(control: ControlSpec) -> ControlSpec:
-    """Return what says who is in force when, where the first contact is in force before any."""
+    """Return the rules of the active controller; the first contact is active at the start."""
     contact = None if control.contact is None else tuple(control.contact.items())
     return control.model_copy(update={"contact": contact})
 
@@ -76,7 +75,7 @@ def _in_order(control: ControlSpec) -> ControlSpec:
 def _with_goals(
     controller: ControllerSpec, beside: ControllerSpec | None, goals: GoalsSpec | None
 ) -> ControllerSpec:
-    """Return a controller with the goals of the whole spec that the one beside it has as its own.
+    """Return a controller with the common goals of the spec that its counterpart states itself.
 
     So has a controller without goals of its own, of whatever type.
     """
@@ -92,7 +91,7 @@ def _with_goals(
 
 
 def _changes(before: object, after: object, at: Place, how: Declared) -> Iterator[Change]:
-    """Compare two values; None where nothing is said."""
+    """Compare two values; None for a missing one."""
     if before == after:
         return
     stronger, unsaid = how
@@ -146,7 +145,7 @@ def _change(before: object, after: object, at: Place, weaker: bool) -> Change:
 
 
 def _is_weaker(before: list[Any], after: list[Any], stronger: Stronger | None) -> bool:
-    """Tell whether a range, or a value as both its ends, asks for less than another one."""
+    """Tell whether a range asks for less than another; a value is a range of no width."""
     (low, high), (new_low, new_high) = before, after
     if stronger == "larger":
         return _less(new_low, low) is not False
@@ -165,7 +164,7 @@ def _is_weaker(before: list[Any], after: list[Any], stronger: Stronger | None) -
 
 
 def _parts(value: object, stronger: object) -> dict[Any, object] | None:
-    """Return what a value consists of, by its keys or places; None for a single value or range."""
+    """Return the parts of a value, by keys or indices; None for a single value or range."""
     if isinstance(value, dict):
         return value
     if isinstance(value, Affine):
@@ -193,7 +192,7 @@ def _is_arbitrary(value: object) -> bool:
 
 
 def _points(value: object) -> tuple[Any, Any, Any]:
-    """Return the value that a design takes, and both ends of what it covers."""
+    """Return the value for the design, and both ends of the covered range."""
     if isinstance(value, Ranged):
         return value.nominal, *value.range
     low, high = value[:2] if isinstance(value, tuple) else (value, value)
@@ -206,7 +205,7 @@ def _is_single(value: object) -> bool:
 
 
 def _exact(value: object) -> object:
-    """Return what is the same for all ways to write one value."""
+    """Return a normal form, equal for all ways to write one value."""
     if isinstance(value, Quantity):
         return value.dimension, value.pi_power if value.value else 0, value.rational_part
     return (value.unit, value.value) if isinstance(value, DwellTime) else value
@@ -224,7 +223,7 @@ def _less(a: object, b: object) -> bool | None:
 
 
 def _said(value: object) -> str:
-    """Return what is said as one short text."""
+    """Return a value as one short text."""
     if isinstance(value, Ranged) and not _is_single(value):
         return quoted(f"{_text(value.nominal)} in {_text(value.range)}")
     return quoted(_text(value))

@@ -164,7 +164,7 @@ def _renamed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, str]]:
 
 
 def _undeclared(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, str]]]:
-    """Yield the parameters in the matrices that are not declared, and what to do."""
+    """Yield the undeclared parameters in the matrices, with the remedy."""
     known = spec.parameters.keys()
     for index, mode in enumerate(spec.modes):
         if mode.parameters <= known:

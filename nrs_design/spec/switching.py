@@ -30,7 +30,7 @@ from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 
 MAX_TRANSITIONS = 20_000
 MAX_DIMENSION = 64
-# Of a matrix, or of the parameters; decimals and common ratios stay far below.
+# Bits of the denominator of a matrix, or of the parameters; usual numbers stay far below.
 MAX_DENOMINATOR_BITS = 1024
 # Seconds or steps; a system with slower modes is better written in another unit of time.
 LONGEST_DWELL = 4096
@@ -51,18 +51,18 @@ class DwellTime:
 
     text: str  # As written, such as ``2.76 s`` or ``3 steps``
     value: Fraction  # In s, or the number of steps
-    unit: str  # Which of the two it is
+    unit: str  # Seconds or steps
 
 
 @dataclass(frozen=True, slots=True)
 class DwellObstacle:
-    """Why a spec and a dwell time exclude each other, and what to change in the spec."""
+    """Reason why a spec and a dwell time exclude each other, with the remedy."""
 
     message: str
     remedy: str
 
 
-# One for all modes, or by their names; those left out have none.
+# One for all modes, or one by name; modes that are not named have none.
 DwellTimes = DwellTime | dict[str, DwellTime]
 
 
@@ -165,7 +165,7 @@ class SwitchingSpec(SpecModel, unsaid="most"):
 
     @property
     def names_contacts(self) -> bool:
-        """Whether rules are about controllers in one contact each, such as ``tissue/soft``."""
+        """Tell whether rules name controllers with one contact each, such as ``tissue/soft``."""
         named = (name for at, _ in self.dwell_times() for name in at[1:])
         ends = (name for transition in self.transitions or () for name in transition)
         return any("/" in name for name in (*named, *ends))
@@ -218,7 +218,7 @@ def _rule(*words: str) -> ExpandedBy:
 
 
 SwitchingRule = Annotated[SwitchingSpec, _rule(ARBITRARY)]
-# Of a spec that may have a mode logic, which its own validator turns into rules first.
+# Specs with a mode logic turn it into rules in their own validator first.
 LogicalRule = Annotated[SwitchingSpec, _rule(ARBITRARY, MODE_LOGIC)]
 
 

@@ -66,7 +66,7 @@ def _line_start(text: str, index: int) -> int:
 
 
 def fault_mark(error: MarkedYAMLError) -> StringMark | None:
-    """Where the fault is: what was begun and not finished is best shown at its beginning."""
+    """Return the place of the fault; an unfinished part is shown at its beginning."""
     begun = error.context in ("while scanning a simple key", "while scanning a quoted scalar")
     marks = (error.problem_mark, error.context_mark)
     found: StringMark | None = next(filter(None, reversed(marks) if begun else marks), None)

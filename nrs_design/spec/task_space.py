@@ -1,4 +1,4 @@
-"""Several axes of a robot in one file: what all of them have in common, and what each has alone.
+"""Several axes of a robot in one file: common keys, and keys of each axis.
 
 Every axis is an interaction design, addressed as ``FILE#AXIS``.
 """
@@ -25,7 +25,7 @@ from nrs_design.spec.places import place_of
 KIND = "task-space"
 SEPARATOR = "#"
 MAX_AXES = 12
-# What an axis is called follows from the file.
+# The name of an axis follows from the file.
 _NAMING = ("kind", "name", "title")
 
 _Keys = dict[str, Any]

@@ -1,4 +1,4 @@
-"""Which controller is active when: thresholds on command and torque, and what keeps them apart.
+"""Switching by thresholds on command and torque, and the least time between switches.
 
 A switch is made when all of its conditions hold. A signal that is known up to a noise N, as old as
 an age D, and no faster than a rate R needs a time to get from one threshold to another: at least
@@ -137,7 +137,7 @@ class SwitchSeparation:
     entering: int
     leaving: int
     signal: str | None  # That has to move in between; None if none has
-    seconds: Fraction  # At least so long, not rounded; zero if nothing keeps them apart
+    seconds: Fraction  # Least time between the switches, not rounded; zero if there is none
 
 
 class ThresholdLogicSpec(SpecModel, stronger="unknown"):
@@ -156,7 +156,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
     )
 
     def _unsaid(self) -> Iterator[tuple[Location, str]]:
-        """Yield the conditions of switches on a signal of which nothing is said."""
+        """Yield the conditions of switches on an undeclared signal."""
         for index, switch in enumerate(self.switches):
             for name in switch.conditions:
                 if getattr(self.signals, name) is None:
@@ -179,8 +179,8 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
                 yield ("hold", *filter(None, [name])), time.text
 
     def _chattering(self) -> Iterator[tuple[Location, tuple[str, int, int]]]:
-        """Yield controllers that may be left as soon as they are entered, and by which switches."""
-        # Of a signal of which nothing is said there is nothing to compute.
+        """Yield controllers that may be left as soon as they are entered, with the switches."""
+        # Nothing can be computed of an undeclared signal.
         for name in () if any(self._unsaid()) else self.controllers:
             apart = self.tightest(name)
             if apart is not None and self.stay(name) is None:
@@ -213,7 +213,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         return tuple(dict.fromkeys((self.start, *ends)))
 
     def pairs(self, controller: str) -> Iterator[SwitchSeparation]:
-        """Yield how far apart every switch to a controller and every one from it lie."""
+        """Yield the distance between every switch to a controller and every switch from it."""
         for i, entering in enumerate(self.switches):
             for j, leaving in enumerate(self.switches):
                 if entering.target == controller == leaving.source:
@@ -224,7 +224,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
         return min(self.pairs(controller), key=lambda apart: apart.seconds, default=None)
 
     def derived(self, controller: str) -> DwellTime | None:
-        """Return what thresholds, noise and age give, rounded down; None if that is nothing."""
+        """Return the least time by thresholds, noise and age, rounded down; None without one."""
         apart = self.tightest(controller)
         return None if apart is None or apart.seconds <= 0 else shown_time(apart.seconds)
 
@@ -258,7 +258,7 @@ class ThresholdLogicSpec(SpecModel, stronger="unknown"):
 
 
 def _opposed(entering: Condition, leaving: Condition) -> tuple[Quantity, Quantity] | None:
-    """Return the upper and the lower threshold if the two ask for opposite sides."""
+    """Return the upper and the lower threshold of two conditions on opposite sides."""
     if entering.above is not None and leaving.below is not None:
         return entering.above, leaving.below
     if entering.below is not None and leaving.above is not None:
@@ -283,7 +283,7 @@ def shown_time(seconds: Fraction) -> DwellTime:
 
 
 def values_at_switch(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> Mapping[str, float]:
-    """Return how far the true value of each signal may have gone when a switch is made.
+    """Return the largest change of the true value of each signal until a switch is made.
 
     That is where its condition is the last one to come true: the threshold, the noise, and what the
     signal moves in its age and while the timer holds the switch back.

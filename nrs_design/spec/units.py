@@ -20,7 +20,7 @@ from nrs_design.models.axis import COMMAND_UNITS
 from nrs_design.proof.text import quoted
 from nrs_design.spec.algebra import Operators, read_algebra
 
-# Of the thesis, and of a spec that names none.
+# Unit of the thesis, and of a spec that names none.
 THESIS_COMMAND = "rpm"
 BASE_UNITS = ("kg", "m", "s", "rad", *COMMAND_UNITS)
 MAX_UNIT_LENGTH = 60
@@ -37,7 +37,7 @@ _STRANGE = {
     "³": "write ^3 for a cube",
     **dict.fromkeys("µμ", "write the number in the unit without the prefix"),
 }
-# What is meant by other words, beside units in other capitals.
+# Units by other words, beside units in other capitals.
 _OTHER_WORDS = (
     "Nm=N*m Nms=N*m*s kgm=kg*m sec=s second=s seconds=s degree=deg degrees=deg radian=rad "
     "radians=rad newton=N meter=m volt=V ampere=A PWM=counts"
@@ -99,7 +99,7 @@ UNITS = {
 
 
 def command_unit(dimension: tuple[int, ...]) -> str:
-    """Return the unit of commands in a dimension that holds one, or is that of one."""
+    """Return the unit of commands for a dimension that contains the command."""
     powers = zip(BASE_UNITS, dimension, strict=True)
     held = next((unit for unit, power in powers if unit in COMMAND_UNITS and power), None)
     return held or next(
@@ -160,7 +160,7 @@ def has_unknown(text: str) -> bool:
 
 
 def guess_unit(symbol: str) -> str | None:
-    """Return what is probably meant by a symbol that is no unit."""
+    """Return the unit that an unknown symbol probably means."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]
     near = alike or difflib.get_close_matches(symbol, UNITS, n=1)
     return _LIKELY.get(symbol) or (near[0] if near else None)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
-# Interaction designs of an axis that slides, by what they are of an axis that turns.
+# Interaction designs of a sliding axis, by the template of the turning axis.
 PRISMATIC = {
     "interaction-design": "prismatic-axis",
     "velocity-interface": "prismatic-velocity-interface",

@@ -132,16 +132,16 @@ def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator
     the box: what decreases in all corners in continuous time decreases in the whole box. An
     `InternalError` if the matrix halfway is not the mean of the corners.
     """
-    own = {name: interval for name, interval in parameters.items() if name in mode.parameters}
+    ranges = {name: interval for name, interval in parameters.items() if name in mode.parameters}
     others = {name: interval.nominal for name, interval in parameters.items()}
-    corners = [(labels, mode.matrix(others | at)) for labels, at in labelled_ends(own)]
+    corners = [(labels, mode.matrix(others | values)) for labels, values in labelled_ends(ranges)]
     middle = mode.matrix({name: interval.middle for name, interval in parameters.items()})
     mean = combine(*((Fraction(1, len(corners)), [*chain(*A)]) for _, A in corners))
     if [*chain(*middle)] != mean:
         raise InternalError(f"mode {mode.name} is not affine in the parameters")
     constants = constant_parameters(parameters)
     for labels, A in corners:
-        spot = Spot.named(mode.name) + spot_of(labels, own, constants)
+        spot = Spot.named(mode.name) + spot_of(labels, ranges, constants)
         yield LocatedMode(mode.name, spot, "", Period(A))
 
 
@@ -157,18 +157,18 @@ def modes_with_misses(
 
     automaton = automaton_of(*rule.window)
     # Modes by miss and by the state after them, in the order of states.
-    reached: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
+    groups: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
     for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
         corners = [item for item in items if (item.group == rule.mode) is missed]
         for target in sorted({t for t in targets if t is not None}):
-            reached[missed, target] = tuple(
+            groups[missed, target] = tuple(
                 replace(item, spot=item.spot + Spot.named(f"s{target}")) for item in corners
             )
     transitions: list[tuple[str, str]] = []
-    stays: list[tuple[str, Stay]] = []
-    for (_, state), sources in reached.items():
+    dwells: list[tuple[str, Stay]] = []
+    for (_, state), sources in groups.items():
         following = [(False, automaton.hit[state]), (True, automaton.miss[state])]
-        after = [mode for missed, t in following if t is not None for mode in reached[missed, t]]
+        after = [mode for missed, t in following if t is not None for mode in groups[missed, t]]
         names = {mode.name for mode in after}
         if (len(transitions) + len(sources) * len(after)) > MAX_TRANSITIONS:
             raise AssemblyError(
@@ -179,9 +179,9 @@ def modes_with_misses(
         for source in sources:
             transitions += ((source.name, mode.name) for mode in after if mode is not source)
             if source.name not in names:
-                stays.append((source.name, ONCE))
-    modes = tuple(mode for corners in reached.values() for mode in corners)
-    return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(stays))
+                dwells.append((source.name, ONCE))
+    modes = tuple(mode for corners in groups.values() for mode in corners)
+    return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(dwells))
 
 
 def assemble(
@@ -209,8 +209,8 @@ def assemble(
     sampled = sampling is not None
     constants = tuple(constants_of(plant, conditions.contacted, drive, sampled=sampled))
     if sampling is not None and conditions.constant_delay_key is not None:
-        said = conditions.constant_delay_key, conditions.command_delay, sampling.step
-        constants = (*constants, constant_lateness(*said))
+        delay = conditions.constant_delay_key, conditions.command_delay, sampling.step
+        constants = (*constants, constant_lateness(*delay))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     modes: Sequence[LocatedMode]
@@ -227,8 +227,8 @@ def assemble(
     system = with_constants(system, constants, modes)
     period = None if sampling is None else sampling.outer
     # Environments with memory stand at their nominal values at all points.
-    remembers = any(e.law.has_memory for e in plant.select_environments(design.contacts))
-    but = points == ENDS and remembers and "memory"
+    has_memory = any(e.law.has_memory for e in plant.select_environments(design.contacts))
+    but = points == ENDS and has_memory and "memory"
     disturbed = bool(system.channels) and period is not None
     assumptions = (
         *system.assumptions,

@@ -46,14 +46,14 @@ def assume_matrices(
 def _assume_parameter(name: str, interval: Interval) -> Assumption:
     if interval.low == interval.high:
         return assume("range.value", name=name, value=exact_text(interval.low))
-    how = "range.varies" if interval.varies else "range.constant"
-    return assume(how, name=name, ends=interval.text)
+    kind = "range.varies" if interval.varies else "range.constant"
+    return assume(kind, name=name, ends=interval.text)
 
 
 def _assume_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
     if (rule := spec.misses) is not None:
-        most, of = rule.window
-        missed = assume("rules.misses", mode=rule.mode, at_most=most, of=of)
+        misses, steps = rule.window
+        missed = assume("rules.misses", mode=rule.mode, at_most=misses, of=steps)
         return assume("at-a-switch.continuous", which="one"), missed
     if spec.switching.is_arbitrary and not spec.resets:
         return GIVEN_MATRICES[1:]
@@ -67,11 +67,11 @@ def _assume_switches(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
 
 
 def _listing(
-    id: str, counted: str, switches: Sequence[tuple[str, str]], **values: object
+    id: str, count_id: str, switches: Sequence[tuple[str, str]], **values: object
 ) -> Assumption:
     """Return an assumption that lists the switches, or counts more than `MAX_LISTED`."""
     if len(switches) > MAX_LISTED:
-        return assume(counted, count=len(switches), **values)
+        return assume(count_id, count=len(switches), **values)
     return assume(id, switches=tuple(name for pair in switches for name in pair), **values)
 
 
@@ -81,12 +81,12 @@ def assume_rules(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
         return (assume("any-signal.all"),)
     found = []
     for (key, *names), dwell in rules.dwell_times():
-        one, every = _STAYS[key]
+        one, general = _STAYS[key]
         time = _time_text(dwell)
         found.append(
             assume(one, noun=noun, name=names[0], time=time)
             if names
-            else assume(every, noun=noun, time=time)
+            else assume(general, noun=noun, time=time)
         )
     if rules.transitions is None:
         return (*found, assume("any-signal.follow", noun=noun))
@@ -106,9 +106,9 @@ def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
-def command_in(granted: Iterable[Assumption]) -> str:
+def command_in(assumptions: Iterable[Assumption]) -> str:
     """Return the unit of the motor command that the assumptions state; rpm by default."""
-    units = (dict(item.fields).get("unit", ()) for item in granted if item.id == COMMAND_UNIT)
+    units = (dict(item.fields).get("unit", ()) for item in assumptions if item.id == COMMAND_UNIT)
     return next((unit for stated in units for unit in stated), THESIS_COMMAND)
 
 
@@ -128,16 +128,16 @@ def assume_data(spec: InteractionDesignSpec) -> Iterator[Assumption]:
         if environment.range_covers is not None:
             yield _coverage("coverage.range", name, environment.range_covers, environment)
         if environment.linearized_about is not None:
-            about = str(environment.linearized_about)
-            yield assume("linearized.about", environment=name, about=about)
-    for at, item in spec.identified.items():
-        name, why = at[-1], item.accept_doubt
+            point = str(environment.linearized_about)
+            yield assume("linearized.about", environment=name, about=point)
+    for path, item in spec.identified.items():
+        name, reason = path[-1], item.accept_doubt
         if item.doubts:
-            how = "doubt.listed" if why is None else "doubt.accepted"
-            yield assume(how, name=name, doubts=tuple(item.doubts), why=why)
-        elif why is not None:
+            kind = "doubt.listed" if reason is None else "doubt.accepted"
+            yield assume(kind, name=name, doubts=tuple(item.doubts), why=reason)
+        elif reason is not None:
             sizes = tuple(text.partition(":")[0] for text in unusual(item))
-            yield assume("doubt.unusual", name=name, sizes=sizes, why=why)
+            yield assume("doubt.unusual", name=name, sizes=sizes, why=reason)
 
 
 def _coverage(id: str, name: str, covered: str, item: IdentifiedRangesSpec) -> Assumption:

@@ -98,9 +98,9 @@ class CommandTiming:
             begin = min(max(self.at - age * self.period, ZERO), self.period)
             return Interval.point(self.period - begin)
         shortest, longest = self.lengths.low, self.lengths.high
-        begins = self.earliest - age * longest, self.latest - age * shortest
-        low = shortest - min(max(begins[1], ZERO), shortest)
-        high = longest - min(max(begins[0], ZERO), longest)
+        bounds = self.earliest - age * longest, self.latest - age * shortest
+        low = shortest - min(max(bounds[1], ZERO), shortest)
+        high = longest - min(max(bounds[0], ZERO), longest)
         return Interval(high, low, high)
 
 

@@ -63,41 +63,41 @@ def close_loop(
     constants: Sequence[ConstantParameter] = (),
 ) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Return the system of a loop in continuous time, and its modes."""
-    state, limited = shared_state(conditions, plant, design), conditions.initial_force is not None
+    state, has_saturation = shared_state(conditions, plant, design), conditions.initial_force is not None
     rules = conditions.switching
     loss = _loss_of(state, conditions.contact, rules)
     items: list[LocatedMode] = []
     free: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
     for c in design.controllers:
-        own = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
+        modes = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
         air = [*_modes(c, state, [AIR], constants)] if loss is not Loss.NEVER else []
-        own += air if loss.anywhere else ()
+        modes += air if loss.anywhere else ()
         free += air
-        groups[c.name] = dict.fromkeys(item.group for item in own)
-        items += own
+        groups[c.name] = dict.fromkeys(item.group for item in modes)
+        items += modes
     losable, velocity = loss is Loss.SURFACE, state.motion.output(len(state.names))
     pulling = could_pull(state.environments) if free else ()
-    pulls = tuple(force_rows(velocity, state.names, pulling))
+    tensions = tuple(force_rows(velocity, state.names, pulling))
     system = SwitchedSystem(
         name=conditions.name,
         time=Time.CONTINUOUS,
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=tuple(
-            assume_loop(state, rules, losable=losable, free=loss.anywhere, limited=limited)
+            assume_loop(state, rules, losable=losable, free=loss.anywhere, has_saturation=has_saturation)
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
-        contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
+        contact=lost_on_surface((item.mode for item in free), tensions, conditions.contact)
         if losable
         else None,
-        flights=flights_of(items, state.environments, pulls) if loss.anywhere else None,
+        flights=flights_of(items, state.environments, tensions) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.disturbances is not None:
         _check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
-    return with_saturation(system, conditions, plant.actuator, state) if limited else system, items
+    return with_saturation(system, conditions, plant.actuator, state) if has_saturation else system, items
 
 
 def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> Loss:
@@ -131,10 +131,10 @@ def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> L
     return loss
 
 
-def _not_losable(which: str) -> AssemblyError:
+def _not_losable(detail: str) -> AssemblyError:
     return AssemblyError(
         "loss of contact is modelled for impedance controllers on elastic and damped environments"
-        f"{which}",
+        f"{detail}",
         remedy="use `contact: kept`",
         at=("contact",),
     )
@@ -158,32 +158,32 @@ def _resets(
 
 def _touched(c: Controller, state: SharedState) -> Sequence[Environment | None]:
     """Return the contacts of a controller; None, and all that it feels, if it takes no force."""
-    by_name = {environment.name: environment for environment in state.environments}
-    feels = state.environments if state.feels else ()
-    return [by_name[name] for name in c.contacts] or [None, *feels]
+    environments = {environment.name: environment for environment in state.environments}
+    extra = state.environments if state.feels else ()
+    return [environments[name] for name in c.contacts] or [None, *extra]
 
 
 def _modes(
     c: Controller,
     state: SharedState,
-    touched: Iterable[Environment | None],
+    contacts: Iterable[Environment | None],
     constants: Sequence[ConstantParameter] = (),
     *,
     by_contact: bool = False,
 ) -> Iterator[LocatedMode]:
     """Yield the modes of a controller in some contacts, at every corner of contact and motor."""
-    for e in touched:
-        where = () if e is None else (e.name,)
-        name, known = "/".join((c.name, *where)), (None, *where)
+    for e in contacts:
+        place = () if e is None else (e.name,)
+        name, known = "/".join((c.name, *place)), (None, *place)
         box = state.contact_box(e).beside(state.motor_box)
         # Dependent stiffness and damping do not attain every corner.
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
-        own = [constant for constant in constants if constant.contact in known]
+        relevant = [constant for constant in constants if constant.contact in known]
         for labels, rows in box.corners(partial(state.rows, c.law, e), name):
             yield LocatedMode(
                 name if by_contact else c.name,
-                Spot.named(c.name, *where) + spot_of(labels, real, own),
-                "".join(where),
+                Spot.named(c.name, *place) + spot_of(labels, real, relevant),
+                "".join(place),
                 Period(rows),
             )
 
@@ -197,8 +197,8 @@ def with_command(
     is the limit of the contact force about the pivot, in N m.
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
-    plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or not state.environments:
+    is_velocity = all(law.commands == "velocity" for law in laws.values())
+    if not is_velocity or not state.environments:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something",
             remedy="leave disturbances out",

@@ -44,21 +44,21 @@ def assemble_switching(
     common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
     if rules.transitions is not None:
-        within = ((name, name) for name in groups)
-        transitions = _limited(_expand(chain(within, rules.transitions), groups))
+        self_pairs = ((name, name) for name in groups)
+        transitions = _limited(_expand(chain(self_pairs, rules.transitions), groups))
     jumps = _limited(
         Reset(*pair, matrix)
         for source, target, matrix in resets
         for pair in _expand([(source, target)], groups)
     )
-    stays = tuple(_assembled_stays(rules, groups, Stay(common)))
-    return Switching(common, transitions, jumps, stays=stays)
+    dwells = tuple(_assembled_stays(rules, groups, Stay(common)))
+    return Switching(common, transitions, jumps, stays=dwells)
 
 
 def zeroing(states: Sequence[str], zeroed: Container[str]) -> RationalMatrix:
     """Return the map that sets some states to zero, and leaves the others."""
-    each = zip(states, coordinates(len(states)), strict=True)
-    return RationalMatrix.from_rows([zero(len(states)) if s in zeroed else row for s, row in each])
+    rows = zip(states, coordinates(len(states)), strict=True)
+    return RationalMatrix.from_rows([zero(len(states)) if s in zeroed else row for s, row in rows])
 
 
 def leaving_impedance(controllers: Sequence[Controller]) -> Iterator[Transition]:
@@ -89,15 +89,15 @@ def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]
                 yield a, b
 
 
-def _limited(found: Iterator[T]) -> tuple[T, ...]:
-    kept = tuple(islice(found, MAX_ASSEMBLED + 1))
-    if len(kept) > MAX_ASSEMBLED:
+def _limited(switches: Iterator[T]) -> tuple[T, ...]:
+    result = tuple(islice(switches, MAX_ASSEMBLED + 1))
+    if len(result) > MAX_ASSEMBLED:
         raise AssemblyError(
             f"the rules make more than {MAX_ASSEMBLED} switches between corners",
             remedy="declare fewer transitions, resets, parameters or ranges",
             at=("switching",),
         )
-    return kept
+    return result
 
 
 def clock_of(automaton: MissAutomaton, in_time: tuple[str, ...]) -> Clock:
@@ -119,32 +119,32 @@ def count_stays(
     names, shortest = [*modes], [rules.stay(name)[0] for name in modes]
     counts = [1 if stay is None else max(ceil(stay.value / period), 1) for stay in shortest]
     if len(names) < 2 or max(counts) == 1:
-        none = {"dwell_time": None, "longest_dwell_time": None}
-        return None, rules.model_copy(update=none), ()
+        no_dwell = {"dwell_time": None, "longest_dwell_time": None}
+        return None, rules.model_copy(update=no_dwell), ()
     if sum(counts) > MAX_STATES:
-        most = MAX_STATES // len(names)
+        limit = MAX_STATES // len(names)
         raise AssemblyError(
             f"the dwell times are {sum(counts)} samples long, at most {MAX_STATES} are counted",
-            remedy=f"write dwell times of up to {most} samples each, which is "
-            f"{exact_text(most * period)} s: a longer stay keeps them",
+            remedy=f"write dwell times of up to {limit} samples each, which is "
+            f"{exact_text(limit * period)} s: a longer stay keeps them",
             at=("switching", "dwell_time"),
         )
     first = [sum(counts[:k]) for k in range(len(counts))]
-    allowed = None if rules.transitions is None else frozenset(rules.transitions)
+    transitions = None if rules.transitions is None else frozenset(rules.transitions)
 
     def leads(k: int, spent: int) -> tuple[int, ...]:
         """Return the next state for each controller, after `spent` samples of the k-th one."""
         last = counts[k] - 1
-        to = [NOWHERE] * len(names)
+        targets = [NOWHERE] * len(names)
         if spent == last:
             for other, name in enumerate(names):
-                if allowed is None or (names[k], name) in allowed:
-                    to[other] = first[other]
-        to[k] = first[k] + min(spent + 1, last)
-        return tuple(to)
+                if transitions is None or (names[k], name) in transitions:
+                    targets[other] = first[other]
+        targets[k] = first[k] + min(spent + 1, last)
+        return tuple(targets)
 
     ahead = tuple(leads(k, spent) for k, count in enumerate(counts) for spent in range(count))
-    own, *more = (tuple(found) for found in modes.values())
-    clock = Clock(len(ahead), own, ahead, tuple(more[:-1]))
+    primary, *others = (tuple(found) for found in modes.values())
+    clock = Clock(len(ahead), primary, ahead, tuple(others[:-1]))
     each = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
     return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=each),)

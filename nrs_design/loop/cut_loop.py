@@ -98,7 +98,7 @@ class AbstractAxis(ABC):
 
     @abstractmethod
     def rows(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare = WHOLE
     ) -> Rows:
         """Return a mode, or step, of this controller and contact under a share of the force."""
 
@@ -118,7 +118,7 @@ class AbstractAxis(ABC):
 
     def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         """Return the loop of a controller at fixed parameters of the contact and a place."""
-        return self._loop(self.rows(law, contact, place, cut) for cut in _CUTS)
+        return self._loop(self.rows(law, contact, place, share) for share in _CUTS)
 
     def modes(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
@@ -147,14 +147,14 @@ class ContinuousAxis(AbstractAxis):
         return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
 
     def rows(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare = WHOLE
     ) -> Rows:
         """Return a mode."""
         motion = self.motion_at(place.motor)
         if law.commands == "position":
-            placed = motion if isinstance(motion, Realization) else motion.position_loop
-            return position_mode(placed, law, contact, self.low_pass, cut=cut)
-        return velocity_mode(motion, law, contact, self.low_pass, cut)
+            loop = motion if isinstance(motion, Realization) else motion.position_loop
+            return position_mode(loop, law, contact, self.low_pass, share=share)
+        return velocity_mode(motion, law, contact, self.low_pass, share)
 
     def _loop(self, modes: Iterable[Rows]) -> CutLoop:
         return CutLoop(*map(characteristic, modes))
@@ -185,11 +185,11 @@ class ProcessorAxis(AbstractAxis):
         return self.sampling.outer
 
     def rows(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = WHOLE
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare = WHOLE
     ) -> Rows:
         """Return the map of a period."""
-        held = law.discretize(self.sampling.outer, self.sampling.admittance)
-        return self._step(held, contact, place, cut)
+        discrete = law.discretize(self.sampling.outer, self.sampling.admittance)
+        return self._step(discrete, contact, place, share)
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
@@ -197,7 +197,7 @@ class ProcessorAxis(AbstractAxis):
         """Return the loops of three admittances."""
         T = round_float32(self.sampling.outer)
         laws = [Admittance.discrete(a if inert else None, b, T, spring) for a, b in COORDINATES]
-        return [self._loop(self._step(law, contact, place, cut) for cut in _CUTS) for law in laws]
+        return [self._loop(self._step(law, contact, place, share) for share in _CUTS) for law in laws]
 
     def _loop(self, modes: Iterable[Rows]) -> CutLoop:
         loops = [*map(characteristic, modes)]
@@ -206,15 +206,15 @@ class ProcessorAxis(AbstractAxis):
         return CutLoop(*(on_the_axis(p, self.period) for p in loops))
 
     def _step(
-        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare
+        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare
     ) -> Rows:
         """Return the map of a period in which a share of the force acts."""
-        if cut.carried and not cut.sensed and self.takes is CommandInterface.VELOCITY:
+        if share.carried and not share.sensed and self.takes is CommandInterface.VELOCITY:
             # A spring that draws the measured position enters the law where the force does, so it
             # is cut as well.
             law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
-        sensed = contact.load if cut.sensed else NOTHING
-        carried = contact.load if cut.carried and self.drive.loaded else NOTHING
+        sensed = contact.load if share.sensed else NOTHING
+        carried = contact.load if share.carried and self.drive.loaded else NOTHING
         # Hashing all places takes as long as making the loop.
         axis = replace(self, places=())
         loop, flow = _sampled_loop(axis, law, place, carried, contact.memory_rates)
@@ -224,8 +224,8 @@ class ProcessorAxis(AbstractAxis):
             period = loop.period(loop.sample(law, age, sensed, turn), flow)
             return [row[:n] for row in period.moves]
 
-        whole, between = rows(Turn.BOTH, place.age), self.sampling.round - 1
-        for motion in [rows(Turn.MOTION, 0)] * between if between else ():
+        whole, repeats = rows(Turn.BOTH, place.age), self.sampling.round - 1
+        for motion in [rows(Turn.MOTION, 0)] * repeats if repeats else ():
             whole = [*multiply(motion, whole)]
         return whole
 
@@ -244,8 +244,8 @@ def _sampled_loop(
     known = axis.drive.fix_values({"tau": place.motor.time_constant, GAIN: place.motor.gain})
     if memory is not None:
         known = known.remembering(REMEMBERED, [*map(Interval.point, memory)])
-    touched = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
-    flow = HeldDrive(known, timing).flow(touched)[0].rows
+    load = {s: Interval.point(v) for s, v in zip(LOAD, carried, strict=True)}
+    flow = HeldDrive(known, timing).flow(load)[0].rows
     calendar = Calendar(timing, (place.age, place.age))
     return SampledLoop(SampledProgram(step, (law,)), known, calendar), flow
 
@@ -275,15 +275,15 @@ def _places(
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
     units = {GAIN: f"{unit('rad/s')}/{ranges.command}", "tau": "s"}
-    for labels, at in labelled_ends({GAIN: ranges.gain, "tau": ranges.time_constant}):
+    for labels, values in labelled_ends({GAIN: ranges.gain, "tau": ranges.time_constant}):
         symbols = [label.partition("-")[0] for label in labels]
-        texts = tuple(f"{s} = {float(at[s]):.6g} {units[s]}" for s in symbols)
-        motors.setdefault(replace(nominal, gain=at[GAIN], time_constant=at["tau"]), texts)
-    every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
-    for (motor, texts), age, late in every:
+        texts = tuple(f"{s} = {float(values[s]):.6g} {units[s]}" for s in symbols)
+        motors.setdefault(replace(nominal, gain=values[GAIN], time_constant=values["tau"]), texts)
+    points = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
+    for (motor, texts), age, lateness in points:
         aged = () if ages[0] == ages[1] else (f"delay {age}",)
-        told = () if len({*lates}) == 1 else (f"command {float(late):.6g} s late",)
-        yield Place(motor, age, late, (*texts, *aged, *told))
+        lag_text = () if len({*lates}) == 1 else (f"command {float(lateness):.6g} s late",)
+        yield Place(motor, age, lateness, (*texts, *aged, *lag_text))
 
 
 def characteristic(rows: Sequence[LinearForm]) -> Polynomial:

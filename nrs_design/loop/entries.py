@@ -31,17 +31,17 @@ class Entries:
 
     drive: Drive
 
-    def rates(self, at: Mapping[str, Any], by: str = "") -> arb_mat:
+    def rates(self, values: Mapping[str, Any], symbol: str = "") -> arb_mat:
         """Return ``G = [[A, B], [0, 0]]`` at some numbers, or its derivative by one of them."""
-        return _filled(self.drive.rates, at, by, self.drive.order + 1)
+        return _filled(self.drive.rates, values, symbol, self.drive.order + 1)
 
-    def at(self, at: Mapping[str, Any], h: arb) -> arb_mat:
+    def at(self, values: Mapping[str, Any], h: arb) -> arb_mat:
         """Return the entries at some numbers and a time."""
-        return self.jet(at, h, "", h, 0)[0]
+        return self.jet(values, h, "", h, 0)[0]
 
-    def acting(self, at: Mapping[str, Any]) -> list[list[bool]]:
+    def acting(self, values: Mapping[str, Any]) -> list[list[bool]]:
         """Return the entries that are not identically zero, row by row as `at`."""
-        G = _sizes(self.rates(at))
+        G = _sizes(self.rates(values))
         n, m = self.drive.order, self.drive.order + 1
         paths = step = G
         for _ in range(m):
@@ -51,12 +51,12 @@ class Entries:
             [i == j != n - 1 or not bool(paths[i, j] == 0) for j in range(m)] for i in range(n)
         ]
         if (speed := self.drive.speed) is not None:
-            L = _sizes(_filled(speed, at, "", 1, m))
+            L = _sizes(_filled(speed, values, "", 1, m))
             row = L + L * paths
             found.append([not bool(row[0, j] == 0) for j in range(m)])
         return found
 
-    def jet(self, at: Mapping[str, Any], h: arb, by: str, width: arb, order: int) -> list[arb_mat]:
+    def jet(self, values: Mapping[str, Any], h: arb, symbol: str, width: arb, order: int) -> list[arb_mat]:
         """Return the entries and their Taylor coefficients along the range of a number.
 
         They are in shares of the width; `by` is the number, or empty for the time. With ``G = G0 +
@@ -66,9 +66,9 @@ class Entries:
         """
         from flint import arb_mat
 
-        G = self.rates(at)
-        if by:
-            D = self.rates(at, by) * (h * width)
+        G = self.rates(values)
+        if symbol:
+            D = self.rates(values, symbol) * (h * width)
             blocks = _first_blocks(G * h, D, order)
         else:
             blocks = [(G * h).exp()]
@@ -78,14 +78,14 @@ class Entries:
         found = [[[M[i, j] for j in range(m)] for i in range(n)] for M in blocks]
         found[0][n - 1][n - 1] -= 1
         if (speed := self.drive.speed) is not None:
-            L = _filled(speed, at, "", 1, m)
-            slope = _filled(speed, at, by, 1, m) * width if by else arb_mat(1, m)
+            L = _filled(speed, values, "", 1, m)
+            slope = _filled(speed, values, symbol, 1, m) * width if symbol else arb_mat(1, m)
             for k, M in enumerate(blocks):
                 row = L * M + (slope * blocks[k - 1] if k else arb_mat(1, m))
                 found[k].append([row[0, j] for j in range(m)])
         return [arb_mat(rows) for rows in found]
 
-    def moved(self, at: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
+    def moved(self, values: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
         """Return bounds on the change of the entries under a load that varies within the time.
 
         `widths` are those of the ranges of the load. Let ``A(s) = A + (k(s) - k) N`` be the
@@ -102,11 +102,11 @@ class Entries:
         # A velocity that jumps would have a row of its own; a memory does not act on it.
         assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
-        M, total = _sizes(self.rates(at)), arb_mat(m, m)
-        grown = (M * h).exp()
+        M, total = _sizes(self.rates(values)), arb_mat(m, m)
+        growth = (M * h).exp()
         for symbol, width in widths.items():
-            N = _sizes(self.rates(at, symbol))
-            states = grown * (N * M + M * N) * grown * (width * h * h / 8)
+            N = _sizes(self.rates(values, symbol))
+            states = growth * (N * M + M * N) * growth * (width * h * h / 8)
             _, commands = _first_blocks(M * h, N * h, 1)
             total += arb_mat(
                 [
@@ -116,9 +116,9 @@ class Entries:
             )
         return total
 
-    def check_length(self, at: Mapping[str, Any], longest: Fraction) -> None:
+    def check_length(self, values: Mapping[str, Any], longest: Fraction) -> None:
         """Refuse a period of so many time constants that its exponential is out of reach."""
-        M, n = _sizes(self.rates(at)), self.drive.order
+        M, n = _sizes(self.rates(values)), self.drive.order
         # States may be in any units: powers hardly notice.
         for _ in range(3):
             M = M * M
@@ -137,11 +137,11 @@ def too_long() -> AssemblyError:
     )
 
 
-def exact_rows(M: MultiAffine, at: Mapping[str, Fraction]) -> list[list[Fraction]]:
+def exact_rows(M: MultiAffine, values: Mapping[str, Fraction]) -> list[list[Fraction]]:
     """Return a matrix at exact numbers."""
     total: list[list[Fraction]] = []
     for symbols, rows in M.terms.items():
-        factor = prod((at[s] for s in symbols), start=ONE)
+        factor = prod((values[s] for s in symbols), start=ONE)
         total = total or [[ZERO] * len(row) for row in rows]
         total = [
             [a + factor * c for a, c in zip(sums, row, strict=True)]
@@ -171,7 +171,7 @@ def _finite(x: arb) -> arb:
     return x
 
 
-def _first_blocks(diagonal: arb_mat, beside: arb_mat, order: int) -> list[arb_mat]:
+def _first_blocks(diagonal: arb_mat, upper: arb_mat, order: int) -> list[arb_mat]:
     """Return the first row of blocks of the exponential of a matrix of two diagonals of blocks."""
     from flint import arb_mat
 
@@ -180,21 +180,21 @@ def _first_blocks(diagonal: arb_mat, beside: arb_mat, order: int) -> list[arb_ma
     for b, i, j in product(range(order + 1), range(m), range(m)):
         whole[m * b + i, m * b + j] = diagonal[i, j]
         if b < order:
-            whole[m * b + i, m * (b + 1) + j] = beside[i, j]
+            whole[m * b + i, m * (b + 1) + j] = upper[i, j]
     E = whole.exp()
     return [
         arb_mat([[E[i, m * b + j] for j in range(m)] for i in range(m)]) for b in range(order + 1)
     ]
 
 
-def _filled(M: MultiAffine, at: Mapping[str, Any], by: str, height: int, width: int = 0) -> arb_mat:
+def _filled(M: MultiAffine, values: Mapping[str, Any], symbol: str, height: int, width: int = 0) -> arb_mat:
     """Return a matrix of balls, or its derivative by a number, with zeros below."""
     from flint import arb, arb_mat
 
     width = width or height
     total = arb_mat(height, width)
-    for symbols, rows in (M.slope(by) if by else M).terms.items():
-        factor = prod((at[s] for s in symbols), start=arb(1))
+    for symbols, rows in (M.slope(symbol) if symbol else M).terms.items():
+        factor = prod((values[s] for s in symbols), start=arb(1))
         filled = [[factor * ball_around(c) for c in row] for row in rows]
         total += arb_mat([*filled, *[[0] * width] * (height - len(filled))])
     return total

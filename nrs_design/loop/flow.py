@@ -77,7 +77,7 @@ class HeldDrive:
                 yield (*labels, *times), HeldDrive(drive, timing)
 
     def flow(
-        self, touched: Mapping[str, Interval] | None = None, load: tuple[str, str] = LOAD
+        self, contact: Mapping[str, Interval] | None = None, load: tuple[str, str] = LOAD
     ) -> tuple[FlowPoint, ...]:
         """Return the points that enclose the motion of the drive in a period.
 
@@ -87,7 +87,7 @@ class HeldDrive:
         """
         with precision(BITS):
             try:
-                return tuple(_Flow(self.drive, self.timing, touched or {}, load).points())
+                return tuple(_Flow(self.drive, self.timing, contact or {}, load).points())
             except OverflowError:
                 raise too_long() from None
 
@@ -111,18 +111,18 @@ class _Flow:
         self,
         drive: Drive,
         timing: CommandTiming,
-        touched: Mapping[str, Interval],
+        contact: Mapping[str, Interval],
         load: tuple[str, str],
     ) -> None:
         self.drive, self.entries = drive, Entries(drive)
         self.spans = [timing.steps, *(timing.left(age) for age in timing.within)]
-        own = {s: touched.get(s, NOTHING) for s in LOAD} if drive.loaded else {}
-        own |= {s: i for s, i in drive.ranges.items() if s != GAIN}
+        ranges = {s: contact.get(s, NOTHING) for s in LOAD} if drive.loaded else {}
+        ranges |= {s: i for s, i in drive.ranges.items() if s != GAIN}
         names = dict(zip(LOAD, load, strict=True))
         self.ends = {GAIN: (ONE, ONE)}
         self.ends |= {
             s: (1 / i.low, 1 / i.high) if s in drive.inverse else (i.low, i.high)
-            for s, i in own.items()
+            for s, i in ranges.items()
         }
         self.low = {s: ball_around(low) for s, (low, _) in self.ends.items()}
         self.whole = {s: _ball_over(*ends) for s, ends in self.ends.items()}
@@ -131,8 +131,8 @@ class _Flow:
             for s, (low, high) in self.ends.items()
             if low != high
         ]
-        of_tissue = (*LOAD, *MEMORY)
-        self.changing = [n for n in self.numbers if n.symbol in of_tissue and own[n.symbol].varies]
+        tissue = (*LOAD, *MEMORY)
+        self.changing = [n for n in self.numbers if n.symbol in tissue and ranges[n.symbol].varies]
         times = ["T", *(f"h{age}" for age in timing.within)]
         for s, (time, i) in enumerate(zip(times, self.spans, strict=True)):
             if i.low != i.high:
@@ -168,10 +168,10 @@ class _Flow:
             if found is None:
                 A = fmpq_mat([[rational(c) for c in row[: n - 1]] for row in G[:-1]])
                 try:
-                    rest = A.solve(fmpq_mat([[-rational(row[n])] for row in G[:-1]]))
+                    solution = A.solve(fmpq_mat([[-rational(row[n])] for row in G[:-1]]))
                 except ZeroDivisionError:
                     return None
-                v = [fraction(c) for c in rest.entries()]
+                v = [fraction(c) for c in solution.entries()]
                 found = [*v, ZERO, ONE], _dot(G[-1], [*v, ZERO, ONE])
             v, speed = found
             if [_dot(row, v) for row in G] != [*[ZERO] * (n - 1), speed]:
@@ -184,14 +184,14 @@ class _Flow:
         """Return the entries that are not zero; of later commands those of the command alone."""
         # The position of a robot that takes positions acts as minus its command, but on a memory.
         n, acts = self.drive.order, self.entries.acting(self.whole)
-        own = {n - 2} if self.drive.memory else set()
+        memories = {n - 2} if self.drive.memory else set()
         first = [*range(n + 1)] if self.lasting is None else [*range(n)]
-        placed = self.drive.interface is CommandInterface.POSITION
+        by_position = self.drive.interface is CommandInterface.POSITION
         return [
             (s, i, j)
             for s in range(len(self.spans))
             for i, j in product(range(len(acts)), [n] if s else first)
-            if acts[i][j] and not (placed and j == n - 1 and i not in own)
+            if acts[i][j] and not (by_position and j == n - 1 and i not in memories)
         ]
 
     def _ties(self) -> dict[Key, Tie]:
@@ -200,10 +200,10 @@ class _Flow:
 
         if any(number.symbol for number in self.numbers):
             return {}
-        at, n = {s: low for s, (low, _) in self.ends.items()}, self.drive.order
-        rows = [*exact_rows(self.drive.rates, at), [ZERO] * (n + 1)]
+        values, n = {s: low for s, (low, _) in self.ends.items()}, self.drive.order
+        rows = [*exact_rows(self.drive.rates, values), [ZERO] * (n + 1)]
         G = fmpq_mat([[rational(c) for c in row] for row in rows])
-        (L,) = [[]] if self.drive.speed is None else exact_rows(self.drive.speed, at)
+        (L,) = [[]] if self.drive.speed is None else exact_rows(self.drive.speed, values)
 
         def entry(M: fmpq_mat, key: Key) -> fmpq:
             _, i, j = key
@@ -213,10 +213,10 @@ class _Flow:
 
         found: dict[Key, Tie] = {}
         for s, span in enumerate(self.spans):
-            own = [key for key in self.keys if key[0] == s]
-            if own and span.low == span.high:
+            keys = [key for key in self.keys if key[0] == s]
+            if keys and span.low == span.high:
                 M = self.entries.at(self.low, ball_around(span.low))
-                sizes = {(s, i, j): highest(abs(M[i, j])) for _, i, j in own}
+                sizes = {(s, i, j): highest(abs(M[i, j])) for _, i, j in keys}
                 found |= ties(G, span.low, entry, sizes)
         return found
 
@@ -227,15 +227,15 @@ class _Flow:
         gain = {GAIN: self.drive.ranges.get(GAIN, Interval.point(ONE))}
         for labels, curve, point in self._hull():
             for jumped, entries in self._jumped(labels, self._completed(point)):
-                for ends, at in labelled_ends(gain):
-                    yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, at[GAIN]))
+                for ends, values in labelled_ends(gain):
+                    yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, values[GAIN]))
 
     def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
         """Yield points of entries: around the curve of the only range, or at the ends of ranges."""
         # Changes within a period are on no curve. With a load, a constant needs as many corners in
         # the air as in contact.
-        most, found = 0 if self.drive.loaded or self.changing else 1, None
-        if len(self.numbers) <= most:
+        limit, found = 0 if self.drive.loaded or self.changing else 1, None
+        if len(self.numbers) <= limit:
             with suppress(OverflowError):
                 found = simplex(self._curves)
         for k, point in enumerate(found or ()):
@@ -288,27 +288,27 @@ class _Flow:
         A convex entry is not above its interpolation, a concave one not below.
         """
         mine = [n for n in self.numbers if n.span in (None, s)]
-        span, moved = self.spans[s], None
+        span, change = self.spans[s], None
         anywhere = _ball_over(span.low, span.high)
         bends = [
             self.entries.jet(self.whole, anywhere, n.symbol, n.high - n.low, 2)[2] for n in mine
         ]
         if self.changing:
             widths = {n.symbol: n.high - n.low for n in self.changing}
-            moved = self.entries.moved(self.whole, ball_around(span.high), widths)
+            change = self.entries.moved(self.whole, ball_around(span.high), widths)
         places = [tuple(corner[n.name] for n in mine) for corner in corners]
-        made = {
+        matrices = {
             ends: self._at({n.name: (n.low, n.high)[e] for n, e in zip(mine, ends, strict=True)}, s)
             for ends in dict.fromkeys(places)
         }
         for key in self._own(s):
             _, i, j = key
-            below = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
-            above = sum((max(-lowest(B[i, j]), ZERO) for B in bends), ZERO) / 4
-            off = (below + above) / 2 + (ZERO if moved is None else highest(moved[i, j]))
-            shift = ball_around((above - below) / 2)
-            found, error = rounded((M[i, j] + shift for M in made.values()), off)
-            values = dict(zip(made, found, strict=True))
+            sag = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
+            rise = sum((max(-lowest(B[i, j]), ZERO) for B in bends), ZERO) / 4
+            off = (sag + rise) / 2 + (ZERO if change is None else highest(change[i, j]))
+            shift = ball_around((rise - sag) / 2)
+            found, error = rounded((M[i, j] + shift for M in matrices.values()), off)
+            values = dict(zip(matrices, found, strict=True))
             yield key, [values[ends] for ends in places], error
 
     def _own(self, s: int) -> Iterator[Key]:
@@ -317,9 +317,9 @@ class _Flow:
 
     def _at(self, values: Mapping[str, arb], s: int) -> arb_mat:
         """Return the entries over one time where numbers are, by their names."""
-        at = {n.symbol: values[n.name] for n in self.numbers if n.symbol and n.name in values}
+        point = {n.symbol: values[n.name] for n in self.numbers if n.symbol and n.name in values}
         h = next((values[n.name] for n in self.numbers if n.span == s and n.name in values), None)
-        return self.entries.at(self.low | at, ball_around(self.spans[s].low) if h is None else h)
+        return self.entries.at(self.low | point, ball_around(self.spans[s].low) if h is None else h)
 
     def _completed(self, point: Point) -> Point:
         """Return a point with the entries that others give."""
@@ -327,8 +327,8 @@ class _Flow:
         if self.lasting is not None:
             n, T, (v, speed) = self.drive.order, self.spans[0].low, self.lasting
             for i in range(n):
-                own = sum((whole.get((0, i, j), ZERO) * v[j] for j in range(n - 1)), ZERO)
-                whole[0, i, n] = v[i] + (T * speed if i == n - 1 else ZERO) - own
+                known = sum((whole.get((0, i, j), ZERO) * v[j] for j in range(n - 1)), ZERO)
+                whole[0, i, n] = v[i] + (T * speed if i == n - 1 else ZERO) - known
         return whole
 
     def _jumped(self, labels: Sequence[str], point: Point) -> Iterator[tuple[list[str], Point]]:
@@ -339,9 +339,9 @@ class _Flow:
         n = self.drive.order
         ages = {s: age for s, age in self.jumps.items() if f"h{age}-max" not in labels}
         for has in product((0, 1), repeat=len(ages)):
-            late = dict(zip(ages, has, strict=True))
-            texts = [f"in{ages[s]}-{('min', 'max')[come]}" for s, come in late.items()]
-            still = {(s, n, n) for s, come in late.items() if not come}
+            arrivals = dict(zip(ages, has, strict=True))
+            texts = [f"in{ages[s]}-{('min', 'max')[come]}" for s, come in arrivals.items()]
+            still = {(s, n, n) for s, come in arrivals.items() if not come}
             yield texts, {k: ZERO if k in still else x for k, x in point.items()}
 
     def _rows(self, entries: Point, gain: Fraction) -> Rows:

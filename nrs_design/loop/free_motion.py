@@ -64,24 +64,24 @@ class Loss(Enum):
 
 
 def lost_on_surface(
-    free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
+    free: Iterable[Mode], tensions: Iterable[RationalMatrix], contact: str | None
 ) -> Contact:
     """Return that contact is lost where the tissue ends, or would have to pull."""
     losable, loss = contact == "losable", Assumption("contact-lost.surface")
-    return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
+    return Contact(tuple(free), tuple(tensions), required=losable, loss=loss)
 
 
 def flights_of(
     items: Sequence[LocatedMode],
     environments: Iterable[Environment],
-    pulls: tuple[RationalMatrix, ...],
+    tensions: tuple[RationalMatrix, ...],
 ) -> Flights:
     """Return the contact modes, the free modes and the tensile forces."""
     known = {environment.name for environment in environments}
     return Flights(
         tuple(item.name for item in items if item.touches in known),
         tuple(item.name for item in items if item.touches == FREE),
-        pulls,
+        tensions,
     )
 
 
@@ -105,11 +105,11 @@ def force_rows(
     """Yield the force, as a row over the states, of each corner of each contact."""
     unit = coordinates(len(states))
     for environment in environments:
-        shared, *memories = environment.law.states
-        own = [deflection or unit[states.index(shared)]]
-        own += [unit[states.index(f"{environment.name}: {memory}")] for memory in memories]
+        common, *memories = environment.law.states
+        signals = [deflection or unit[states.index(common)]]
+        signals += [unit[states.index(f"{environment.name}: {memory}")] for memory in memories]
         for law in environment.corners:
-            force, _ = law.react(velocity, own)
+            force, _ = law.react(velocity, signals)
             yield RationalMatrix.from_rows([force])
 
 

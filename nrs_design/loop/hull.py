@@ -82,21 +82,21 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
     rests = {key: 2 * highest(abs(curves[key].far)) / 4 ** (len(bent) + 1) for key in bent}
     control = {key: _control_points(curves[key].values) for key in bent}
     for bits in CURVE_BITS:
-        at: dict[Key, list[Fraction]] = {}
+        places: dict[Key, list[Fraction]] = {}
         for key, values in control.items():
             length = max(highest(abs(values[-1] - values[0])), rests[key])
             unit = _power(length, bits)
-            at[key] = [round(middle(value) / unit) * unit for value in values]
-            pairs = zip(values, at[key], strict=True)
+            places[key] = [round(middle(value) / unit) * unit for value in values]
+            pairs = zip(values, places[key], strict=True)
             errors[key] = rests[key] + max(highest(abs(v - ball_around(p))) for v, p in pairs)
-        found = _widened(at, still, errors)
+        found = _widened(places, still, errors)
         if found is not None and found[0] <= (NARROW if bits < CURVE_BITS[5] else WIDEST):
             return found[1]
     return None
 
 
 def _widened(
-    at: Mapping[Key, Sequence[Fraction]],
+    places: Mapping[Key, Sequence[Fraction]],
     still: Mapping[Key, Fraction],
     errors: Mapping[Key, Fraction],
 ) -> tuple[Fraction, list[Point]] | None:
@@ -109,8 +109,8 @@ def _widened(
     """
     from flint import fmpq, fmpq_mat
 
-    bent, size = [*at], len(at) + 1
-    corners = [[at[key][b] for key in bent] for b in range(size)]
+    bent, size = [*places], len(places) + 1
+    corners = [[places[key][b] for key in bent] for b in range(size)]
     rows = [[fmpq(1)] * size, *[[rational(p[i]) for p in corners] for i in range(size - 1)]]
     try:
         inverse = fmpq_mat(rows).inv()
@@ -119,8 +119,8 @@ def _widened(
     loose = [key for key in still if errors[key]]
     wider = []
     for i in range(size):
-        own = (abs(fraction(inverse[i, j])) * errors[key] for j, key in enumerate(bent, 1))
-        w = (sum(own, ZERO) + SHARE * len(loose) / size) / (1 - SHARE * len(loose))
+        shares = (abs(fraction(inverse[i, j])) * errors[key] for j, key in enumerate(bent, 1))
+        w = (sum(shares, ZERO) + SHARE * len(loose) / size) / (1 - SHARE * len(loose))
         wider.append(-(-w // _power(w, 3)) * _power(w, 3) if w else ZERO)
     total = 1 + sum(wider, ZERO)
     low = {key: value - errors[key] for key, value in still.items()}

@@ -68,9 +68,9 @@ def labelled_ends(
 ) -> Iterator[tuple[tuple[str, ...], dict[str, Fraction]]]:
     """Yield the labels and the values at the ends of ranges, the last one turning fastest."""
     for ends in product(*(interval.ends for interval in ranges.values())):
-        named = [(symbol, *end) for symbol, end in zip(ranges, ends, strict=True)]
-        labels = tuple(f"{symbol}-{end}" for symbol, end, _ in named if end)
-        yield labels, {symbol: value for symbol, _, value in named}
+        pairs = [(symbol, *end) for symbol, end in zip(ranges, ends, strict=True)]
+        labels = tuple(f"{symbol}-{end}" for symbol, end, _ in pairs if end)
+        yield labels, {symbol: value for symbol, _, value in pairs}
 
 
 def spot_of(
@@ -157,19 +157,19 @@ def enclosures_of(items: Iterable[LocatedMode]) -> Iterator[tuple[str, ...]]:
 
 
 def constant_lateness(
-    name: str, late: tuple[Fraction, Fraction], period: Fraction
+    name: str, lateness: tuple[Fraction, Fraction], period: Fraction
 ) -> ConstantParameter:
     """Return the time from a sample to its command, in s, as a constant parameter.
 
     One command takes effect in each period, and a mode is at an end of the time that is then left.
     """
-    symbol = f"h{late[0] // period}"
-    said = FixedParameter(name, *late, "s", enclosed=True)
-    return ConstantParameter(said, (f"{symbol}-max", f"{symbol}-min"))
+    symbol = f"h{lateness[0] // period}"
+    fixed = FixedParameter(name, *lateness, "s", enclosed=True)
+    return ConstantParameter(fixed, (f"{symbol}-max", f"{symbol}-min"))
 
 
 def constants_of(
-    plant: Plant, touched: Collection[str], part: str, *, sampled: bool
+    plant: Plant, names: Collection[str], part: str, *, sampled: bool
 ) -> Iterator[ConstantParameter]:
     """Yield the constant parameters of a plant; `part` is the part of the spec that its drive is.
 
@@ -177,11 +177,11 @@ def constants_of(
     of a load: their corners are none of their values.
     """
     drive = plant.zoh_drive
-    contacts = [e for e in plant.environments if not e.parts and e.name in touched]
+    contacts = [e for e in plant.environments if not e.parts and e.name in names]
     for symbol, interval in drive.ranges.items():
         if interval.is_constant:
             key, unit = _DRIVEN[symbol]
-            said = FixedParameter(
+            fixed = FixedParameter(
                 f"{part}.{key}",
                 interval.low,
                 interval.high,
@@ -189,16 +189,16 @@ def constants_of(
                 symbol in drive.inverse,
                 enclosed=sampled and symbol != GAIN,
             )
-            yield ConstantParameter(said, _ends(symbol))
+            yield ConstantParameter(fixed, _ends(symbol))
     for e in contacts:
         keys = zip(e.law.keys, e.law.parameters(), e.law.units(rotational=True), strict=True)
         for (key, symbol, unit), interval in zip(keys, e.ranges, strict=True):
             if not interval.is_constant:
                 continue
             enclosed = sampled and drive.loaded
-            if enclosed and len(touched) > 1:
+            if enclosed and len(names) > 1:
                 raise InternalError("the ends of constants of several contacts are not told apart")
-            said = FixedParameter(
+            fixed = FixedParameter(
                 f"environments.{e.name}.{key}",
                 interval.low,
                 interval.high,
@@ -206,7 +206,7 @@ def constants_of(
                 symbol in e.law.inverse,
                 enclosed,
             )
-            yield ConstantParameter(said, _ends(symbol), e.name)
+            yield ConstantParameter(fixed, _ends(symbol), e.name)
 
 
 # Symbols of the parameters of a drive, with their keys in a spec and their units.
@@ -227,7 +227,7 @@ def corner_counts(
 ) -> list[int]:
     """Return the number of corners of each constant parameter: two, or more around a curve."""
     ends = [dict(mode.spot.corner) for mode in modes]
-    return [1 + max(1, *(at.get(p.said.name, 0) for at in ends)) for p in parameters]
+    return [1 + max(1, *(corner.get(p.said.name, 0) for corner in ends)) for p in parameters]
 
 
 def constant_sets(
@@ -249,8 +249,8 @@ def constant_sets(
         first[mode.varying, tuple(end is not None for end in ends)] = None
     counts = corner_counts(modes, parameters)
     for varying, has in first:
-        every = product(*map(range, counts))
-        keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in every]
+        corners = product(*map(range, counts))
+        keys = [tuple(c if h else None for c, h in zip(place, has, strict=True)) for place in corners]
         if any((varying, key) not in known for key in keys):
             raise InternalError(f"a corner of {varying[0]} has no mode")
         yield tuple(known[varying, key] for key in keys)
@@ -270,7 +270,7 @@ def with_constants(
             remedy="leave out `varies: false` for some of the ranges",
         )
     sets = tuple(constant_sets(modes, parameters))
-    said = tuple(parameter.said for parameter in parameters)
+    fixed = tuple(parameter.said for parameter in parameters)
     return replace(
-        system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=said)
+        system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=fixed)
     )

@@ -39,7 +39,7 @@ _PERIODS = {
 
 
 def assume_loop(
-    loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, limited: bool
+    loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool, has_saturation: bool
 ) -> Iterator[Assumption]:
     """Yield the assumptions about an interaction design.
 
@@ -54,8 +54,8 @@ def assume_loop(
     if loop.feels and not all(c.contacts for c in design.controllers):
         yield assume("contacts.in-position")
     yield from _assume_parts(loop.environments)
-    about = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield _assume_tissue(loop.environments, design.axis, about)
+    tissue_id = "tissue.linear" if loop.offset == "none" else "tissue.offset"
+    yield _assume_tissue(loop.environments, design.axis, tissue_id)
     integrated = any(c.law.commands == "velocity" for c in design.controllers)
     if integrated and all(e.law.has_rest for e in loop.environments):
         yield assume("at-a-switch.deflection")
@@ -66,17 +66,17 @@ def assume_loop(
     if free:
         yield assume("contact-lost.anywhere")
     elif not losable:
-        yield from _assume_kept_contact(design, alone=loop.idle is None)
+        yield from _assume_kept_contact(design, uniform=loop.idle is None)
     reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
-    which = "others" if reset else "all"
+    scope = "others" if reset else "all"
     if rules.is_arbitrary:
-        yield assume("at-a-switch.any-signal", which=which)
+        yield assume("at-a-switch.any-signal", which=scope)
     else:
-        yield assume("at-a-switch.continuous", which=which)
+        yield assume("at-a-switch.continuous", which=scope)
         yield from assume_rules(rules, "mode" if rules.names_contacts else "controller")
         if not rules.names_contacts and rules.dwell_time is None:
             yield assume("any-signal.environment")
-    yield assume(f"not-sampled{'-but-limited' if limited else ''}.continuous")
+    yield assume(f"not-sampled{'-but-limited' if has_saturation else ''}.continuous")
     yield assume("numbers.gains")
     yield from _assume_command_unit(design.command, design.axis)
 
@@ -115,21 +115,21 @@ def _assume_inputs(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
 
 def _assume_idle(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Yield the evolution of idle states of impedance controllers, and of an idle integral."""
-    named, laws = loop.design.axis.label, [c.law for c in loop.design.controllers]
+    label, laws = loop.design.axis.label, [c.law for c in loop.design.controllers]
     decay = idle_decay(idle)
     rate = decay and exact_decimal(decay)
     driving = _names(law for law in laws if law.commands == "velocity")
     others = _names(law for law in laws if law.commands == "position")
     if driving:
-        how, states = "decay" if decay else "held", map(named, (*loop.law.states, REFERENCE))
+        kind, states = "decay" if decay else "held", map(label, (*loop.law.states, REFERENCE))
         yield assume(
-            f"idle.{how}", driving=driving, others=others, states=tuple(states), decay=rate
+            f"idle.{kind}", driving=driving, others=others, states=tuple(states), decay=rate
         )
     if (law := next((law for law in laws if law.is_leaky), None)) is not None:
         yield assume(
             "idle.integral" if decay else "idle.held-integral",
             others=_names(law for law in laws if not law.is_leaky),
-            states=tuple(map(named, law.states)),
+            states=tuple(map(label, law.states)),
             law=law.name,
             decay=rate,
         )
@@ -158,7 +158,7 @@ def assume_sampled_loop(
     disturbed = conditions.disturbances is not None
     environments, program = plant.select_environments(design.contacts), loop.program
     timing, axis = loop.calendar.timing, conditions.axis
-    beyond = disturbed and "disturbances"
+    extra = disturbed and "disturbances"
     single, steady = sampling.round == 1, sampling.jitter is None
     yield assume(
         _PERIODS[single, steady],
@@ -170,39 +170,39 @@ def assume_sampled_loop(
     if not single:
         yield assume("period.order")
     if (misses := sampling.misses) is not None:
-        at_most, of = misses.window
-        yield assume(f"deadlines.{misses.command}", at_most=at_most, of=of)
+        limit, steps = misses.window
+        yield assume(f"deadlines.{misses.command}", at_most=limit, of=steps)
     if timing.latest:
         fixed, constant = timing.earliest == timing.latest, conditions.constant_delay_key
-        how = "fixed" if fixed else "range" if constant is None else "constant"
+        kind = "fixed" if fixed else "range" if constant is None else "constant"
         earliest = not fixed and exact_text(timing.earliest)
-        yield assume(f"command-age.{how}", earliest=earliest, late=exact_text(timing.latest))
+        yield assume(f"command-age.{kind}", earliest=earliest, late=exact_text(timing.latest))
     if plant.drive is not None and plant.drive.speed is not None:
         # The velocity jumps when a command takes effect.
         yield assume("command-age.before")
-    least, most = sampling.delay
-    how, oldest = "fixed" if most else "now", f"{most} sample{'s' * (most != 1)}"
-    if least < most:
-        yield assume("sample-age.range", least=least, most=oldest)
+    lowest, highest = sampling.delay
+    kind, oldest = "fixed" if highest else "now", f"{highest} sample{'s' * (highest != 1)}"
+    if lowest < highest:
+        yield assume("sample-age.range", least=lowest, most=oldest)
     else:
-        yield assume(f"sample-age.{how}", most=oldest)
+        yield assume(f"sample-age.{kind}", most=oldest)
     but = "constant" if any(r.is_constant for e in environments for r in e.ranges) else ""
     yield from _assume_motor(plant, loop, axis, but)
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
-    placed = loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL)
+    by_position = loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL)
     yield assume(
         "inputs.sampled",
-        beyond=beyond,
-        inputs="position" if placed else "velocity",
-        place=placed and "position",
+        beyond=extra,
+        inputs="position" if by_position else "velocity",
+        place=by_position and "position",
         rest="contact" if loss is Loss.SURFACE else "always",
     )
     if any(c.law.spring for c in design.controllers):
-        shared = "spring.shared" if program.idle is None else "spring.idle"
+        spring_id = "spring.shared" if program.idle is None else "spring.idle"
         velocity = program.step.interface is CommandInterface.VELOCITY
-        yield from map(assume, ["spring.measured"] if velocity else [shared, "spring.sample"])
+        yield from map(assume, ["spring.measured"] if velocity else [spring_id, "spring.sample"])
     yield from _assume_positions(program, design, reset=reset)
     yield UNCOUPLED
     yield from _assume_contacts(design)
@@ -211,7 +211,7 @@ def assume_sampled_loop(
         yield from e.law.assumptions(e.name, is_only=len(environments) == 1)
     # For contact loss at the surface, each statement says whether it covers it.
     if loss is Loss.BY_LAWS:
-        yield from _assume_kept_contact(design, alone=program.idle is None)
+        yield from _assume_kept_contact(design, uniform=program.idle is None)
     elif loss is not Loss.SURFACE:
         yield assume(loss.value)
     yield assume("at-a-switch.sampled", which="others" if reset else "all")
@@ -222,7 +222,7 @@ def assume_sampled_loop(
     yield from _assume_arithmetic(conditions, program, laws, design)
     yield assume(
         "not-quantized.sampled",
-        beyond=beyond,
+        beyond=extra,
         quantized="encoder" if conditions.sensed else "sensors",
         saturation="left-out" if conditions.initial_force is None else "stated",
     )
@@ -237,7 +237,7 @@ def _assume_motor(
     drive = plant.drive
     numbers = (ranges.gain, ranges.time_constant) if drive is None else drive.ranges.values()
     # Parameters change at samples only.
-    moves = f"{how}-sampled" if (how := moving(numbers)) else ""
+    moves = f"{how}-sampled" if (kind := moving(numbers)) else ""
     motor = ranges.assumed(axis) | {"moving": moves}
     if drive is not None and drive.interface is CommandInterface.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
@@ -333,8 +333,8 @@ def _assume_parts(environments: Iterable[Environment]) -> Iterator[Assumption]:
     """Yield the assumptions about environments in simultaneous contact."""
     for e in environments:
         if e.parts:
-            how = "contacts.one-side" if e.each_losable else "contacts.at-once"
-            yield assume(how, environment=e.name, parts=tuple(part.name for part in e.parts))
+            kind = "contacts.one-side" if e.each_losable else "contacts.at-once"
+            yield assume(kind, environment=e.name, parts=tuple(part.name for part in e.parts))
 
 
 def _assume_tissue(
@@ -351,15 +351,15 @@ def _assume_tissue(
     return assume(name, ranges=tuple(ranges))
 
 
-def _assume_kept_contact(design: ControllerDesign, *, alone: bool) -> Iterator[Assumption]:
+def _assume_kept_contact(design: ControllerDesign, *, uniform: bool) -> Iterator[Assumption]:
     """Yield the assumption of each control law about contact.
 
     `alone`: all controllers give the motion loop the same kind of command.
     """
-    used = {controller.law.name for controller in design.controllers}
-    laws = [law for name, law in LAWS.items() if name in used]
+    names = {controller.law.name for controller in design.controllers}
+    laws = [law for name, law in LAWS.items() if name in names]
     # Among velocity commands alone there is no mode of free motion.
-    ids = ("never" if alone and a.commands == "velocity" else a.contact_kept for a in laws)
+    ids = ("never" if uniform and a.commands == "velocity" else a.contact_kept for a in laws)
     yield from (assume(f"contact-kept.{id}") for id in ids if id is not None)
 
 

@@ -59,15 +59,15 @@ def velocity_mode(
     law: CompliantLaw,
     contact: AbstractLinearLaw,
     low_pass: LowPass | None = None,
-    cut: ForceShare = WHOLE,
+    share: ForceShare = WHOLE,
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
     ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u. States
     of the low-pass stand between those of law and contact. `cut` is how much of the force acts.
     """
-    own = motion.order + len(law.states)
-    touch = own + (0 if low_pass is None else low_pass.order)
+    law_end = motion.order + len(law.states)
+    touch = law_end + (0 if low_pass is None else low_pass.order)
     state = coordinates(touch + len(contact.states))
     velocity = motion.output(len(state))
     if contact.has_mass:
@@ -75,16 +75,16 @@ def velocity_mode(
         force, reaction = contact.react_accelerated(velocity, acceleration, state[touch:])
     else:
         force, reaction = contact.react(velocity, state[touch:])
-    heard = combine((cut.sensed, force))
-    felt: LinearForm = heard
+    heard = combine((share.sensed, force))
+    feedback: LinearForm = heard
     sensed: list[LinearForm] = []
     if low_pass is not None:
-        felt, sensed = low_pass.respond(heard, state[own:touch])
+        feedback, sensed = low_pass.respond(heard, state[law_end:touch])
     if law.spring:
         # The integral of the command follows from the deflection, so it needs no state.
-        felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
-    command, rates = law.respond(felt, state[motion.order : own])
-    return [*motion.rates(command, combine((cut.carried, force))), *rates, *sensed, *reaction]
+        feedback = combine((Fraction(1), feedback), (law.spring, motion.integral(state[touch])))
+    command, rates = law.respond(feedback, state[motion.order : law_end])
+    return [*motion.rates(command, combine((share.carried, force))), *rates, *sensed, *reaction]
 
 
 def _acceleration(
@@ -134,7 +134,7 @@ def position_mode(
     contact: AbstractLinearLaw | None = None,
     low_pass: LowPass | None = None,
     bleeding: Fraction | None = None,
-    cut: ForceShare = WHOLE,
+    share: ForceShare = WHOLE,
 ) -> Rows:
     """Return A where the motion loop follows a position: for force control, thesis 6.46.
 
@@ -159,13 +159,13 @@ def position_mode(
     left = [] if bleeding is None else [(ONE, w["w"])]
     pulled = [(law.spring, w["r"])] if moves else []
     size, heard = len(w.nothing), lags[-1] if lags else "sensed"
-    own = [w[name] for name in law.states]
+    law_state = [w[name] for name in law.states]
     # A law without force feedback closes no algebraic loop.
-    takes_force = law.respond(w.nothing, own) != law.respond(coordinates(size)[0], own)
+    takes_force = law.respond(w.nothing, law_state) != law.respond(coordinates(size)[0], law_state)
     w.rule("command", lambda: w.sum((ONE, w["r"] if moves else respond()[0]), *left))
     w.rule("velocity", lambda: motion.velocity(w.nothing, lambda: w["command"]))
     w.rule("force", lambda: react()[0])
-    w.rule("sensed", lambda: w.sum((cut.sensed, w["force"])))
+    w.rule("sensed", lambda: w.sum((share.sensed, w["force"])))
     w.rule("felt", lambda: w.sum((ONE, w[heard]), *pulled))
 
     def react() -> Reaction:
@@ -175,11 +175,11 @@ def position_mode(
         return contact.react(w["velocity"] if contact.lags else w.nothing, deflection)
 
     def respond() -> Response:
-        return law.respond(w["felt"] if takes_force else w.nothing, own)
+        return law.respond(w["felt"] if takes_force else w.nothing, law_state)
 
     command, rates = respond()
     return [
-        *motion.rates(w["command"], w.sum((cut.carried, w["force"]))),
+        *motion.rates(w["command"], w.sum((share.carried, w["force"]))),
         *rates,
         *[command] * moves,
         *([] if bleeding is None else [w.sum((-bleeding, w["w"]))]),

@@ -35,13 +35,13 @@ class Box:
     # runs through the interval between the inverse ends, so the corners are the same.
     inverse: frozenset[str] = frozenset()
 
-    def beside(self, other: Box) -> Box:
+    def beside(self, box: Box) -> Box:
         """Return the box of the parameters of both, which have no symbol in common."""
-        if common := self.ranges.keys() & other.ranges.keys():
+        if common := self.ranges.keys() & box.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
-        return Box({**self.ranges, **other.ranges}, self.inverse | other.inverse)
+        return Box({**self.ranges, **box.ranges}, self.inverse | box.inverse)
 
-    def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
+    def corners(self, evaluate: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
         """Yield the labels and matrices of the corners, the last parameter turning fastest.
 
         An `InternalError` if the matrix of that mode is not affine along each axis. That follows
@@ -53,18 +53,18 @@ class Box:
         """
         known: dict[tuple[str, ...], Rows] = {}
         # Neighbors are in the middle on one axis less, so they come first.
-        for at, values in sorted(self._grid(), key=lambda item: item[0].count(MIDDLE)):
-            known[at] = rows_at(values)
-            if MIDDLE not in at:
+        for place, values in sorted(self._grid(), key=lambda item: item[0].count(MIDDLE)):
+            known[place] = evaluate(values)
+            if MIDDLE not in place:
                 continue
-            i = at.index(MIDDLE)
-            low, high = (known[*at[:i], end, *at[i + 1 :]] for end in ("min", "max"))
-            for rows in zip(known[at], low, high, strict=True):
+            i = place.index(MIDDLE)
+            low, high = (known[*place[:i], end, *place[i + 1 :]] for end in ("min", "max"))
+            for rows in zip(known[place], low, high, strict=True):
                 # Most rows do not change at all along an axis.
                 row, x, y = map(tuple, rows)
                 if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
-                    said = f"the matrix of mode {name} is not affine in each parameter"
-                    raise InternalError(said)
+                    message = f"the matrix of mode {name} is not affine in each parameter"
+                    raise InternalError(message)
         corners = (corner for at, corner in known.items() if MIDDLE not in at)
         for (labels, _), corner in zip(labelled_ends(self.ranges), corners, strict=True):
             yield labels, corner
@@ -77,9 +77,9 @@ class Box:
             if symbol in self.inverse:
                 middle = 2 / (1 / interval.low + 1 / interval.high)
             axes.append([*interval.ends, *[(MIDDLE, middle)] * len(interval.ends[1:])])
-        for at in product(*axes):
-            values = zip(self.ranges, (value for _, value in at), strict=True)
-            yield tuple(label for label, _ in at), dict(values)
+        for place in product(*axes):
+            values = zip(self.ranges, (value for _, value in place), strict=True)
+            yield tuple(label for label, _ in place), dict(values)
 
 
 @dataclass(frozen=True, slots=True)

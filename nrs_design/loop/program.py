@@ -75,39 +75,39 @@ class ListedLaw:
     @property
     def all_counts(self) -> dict[str, int]:
         """Largest number of roundings of each term, in the order of the list."""
-        most: dict[str, int] = {}
+        largest: dict[str, int] = {}
         for mode in self.counts.values():
             for name, count in ((n, c) for terms in mode.values() for n, c in terms.items()):
-                most[name] = max(count, most.get(name, 0))
-        return most
+                largest[name] = max(count, largest.get(name, 0))
+        return largest
 
     def step(
         self,
         law: DiscreteLaw,
         numbers: Mapping[str, Fraction],
-        given: Mapping[str, LinearForm],
-        rounded: Mapping[str, LinearForm],
+        inputs: Mapping[str, LinearForm],
+        roundings: Mapping[str, LinearForm],
         shares: Mapping[str, Fraction],
     ) -> RoundedStep:
         """Return a sample of a law in force; inputs and states that are missing are zero."""
         mode = law.law.name
-        nothing = zero(len(next(iter(given.values()))))
-        every = {value.name: given.get(value.name, nothing) for value in self.law.values}
+        nothing = zero(len(next(iter(inputs.values()))))
+        values = {value.name: inputs.get(value.name, nothing) for value in self.law.values}
         off = {
-            result: _sum(nothing, (rounded[name] for name in terms))
+            result: _sum(nothing, (roundings[name] for name in terms))
             for result, terms in self.counts[mode].items()
         }
         errors = {name: off[name] for name in own_results(self.law)}
-        found = rounded_terms(self.law, self.law.modes.index(mode), every, numbers, errors)
+        found = rounded_terms(self.law, self.law.modes.index(mode), values, numbers, errors)
         terms = {
             result: tuple(replace(t, name=names.get(t.name, t.name)) for t in found[result])
             for result, names in self.names[mode].items()
         }
-        return RoundedStep(self.law, numbers, rounded, shares, terms, off)
+        return RoundedStep(self.law, numbers, roundings, shares, terms, off)
 
 
 @lru_cache(maxsize=32)
-def list_law(order: int, kinds: Kinds, takes: CommandInterface | None = None) -> ListedLaw:
+def list_law(order: int, kinds: Kinds, interface: CommandInterface | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
     `order` is that of the filter of the force, `takes` the command of a robot without a motor of
@@ -115,32 +115,32 @@ def list_law(order: int, kinds: Kinds, takes: CommandInterface | None = None) ->
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
-    law = build_law(StepFrame(ANY, ANY, low_pass, interface=takes), laws, ANY)
+    law = build_law(StepFrame(ANY, ANY, low_pass, interface=interface), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
     # Commands are zero in the loop of a proof; angles count from the commanded angle.
-    given: dict[str, LinearForm] = {
+    inputs: dict[str, LinearForm] = {
         value.name: form if value.stored or value.name in SENSED else zero(len(mark))
         for value, form in zip(law.values, unit, strict=True)
     }
     left_out = {law.following[value.name] for value in law.states if not value.stored}
-    every: dict[str, dict[str, dict[str, str]]] = {}
+    all_names: dict[str, dict[str, dict[str, str]]] = {}
     counts: dict[str, dict[str, dict[str, int]]] = {}
     takes_rounded: set[str] = set()
     for i, mode in enumerate(law.modes):
-        names, counted = every.setdefault(mode, {}), counts.setdefault(mode, {})
-        taken: set[str] = set()
-        for result, terms in counted_terms(law, i, given).items():
+        names, tally = all_names.setdefault(mode, {}), counts.setdefault(mode, {})
+        term_names: set[str] = set()
+        for result, terms in counted_terms(law, i, inputs).items():
             if result in left_out:
                 continue
             # Each result has its own roundings, so their names differ.
-            names[result] = {t: f"{t} kept" if t in taken else t for t in terms}
-            counted[result] = {names[result][term]: count for term, count in terms.items()}
-            taken |= {*counted[result]}
-        marked = rounded_terms(law, i, given, errors=dict.fromkeys(own_results(law), mark))
+            names[result] = {t: f"{t} kept" if t in term_names else t for t in terms}
+            tally[result] = {names[result][term]: count for term, count in terms.items()}
+            term_names |= {*tally[result]}
+        marked = rounded_terms(law, i, inputs, errors=dict.fromkeys(own_results(law), mark))
         takes_rounded |= {t.name for terms in marked.values() for t in terms if t.form[-1]}
     if unknown := takes_rounded - SECOND_ORDER:
         raise InternalError(f"the second order of {', '.join(sorted(unknown))} is not bounded")
-    return ListedLaw(law, every, counts)
+    return ListedLaw(law, all_names, counts)
 
 
 def own_results(law: StepLaw) -> Iterator[str]:
@@ -186,8 +186,8 @@ class RoundedStep:
 
     def command(self) -> LinearForm:
         """Return the command with its rounding errors, those of second order apart."""
-        again = (second(term.name) for term in self.terms.get("error", ()))
-        off = (self.rounded[name] for name in again if name in self.rounded)
+        names = (second(term.name) for term in self.terms.get("error", ()))
+        off = (self.rounded[name] for name in names if name in self.rounded)
         return _sum(self.result(self.law.outputs["command"]), off)
 
     def motion_sizes(self) -> dict[str, LinearForm]:
@@ -195,16 +195,16 @@ class RoundedStep:
         shares, Kp, D = self.shares, self.numbers["Kp"], self.numbers["Kd_over_T"]
         summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
         read = combine(*((ONE, form) for form in summands.values()))
-        made = {term.name: self._exact(term.form) for term in self.terms[self._command]}
+        parts = {term.name: self._exact(term.form) for term in self.terms[self._command]}
         # Of a sum of two sizes, the part that is of second order counts with another term.
         # Without damping, the command has one term.
         off = shares.get(KD, Fraction(0))
-        more = shares[KP] * Kp * (1 + shares[ERROR]) + off * D * shares[ERROR]
+        share = shares[KP] * Kp * (1 + shares[ERROR]) + off * D * shares[ERROR]
         sizes: dict[str, LinearForm] = {
             ERROR: combine((shares[ERROR], read)),
-            KP: combine((short(more), read)),
+            KP: combine((short(share), read)),
         }
-        for name, form in made.items():
+        for name, form in parts.items():
             if name == KD:
                 sizes[KD] = _shortened(shares[KD], D, form)
             elif name != KP and name in shares:
@@ -218,9 +218,9 @@ class RoundedStep:
         """Return bounds on the roundings of all other results."""
         sizes: dict[str, LinearForm] = {}
         factors = {STEP: "T", KEPT: "a"}
-        own = {*own_results(self.law)}
+        separate = {*own_results(self.law)}
         for result in self.terms.keys() - {"error", self._command}:
-            beyond = 1 + self.shares[STEP] if result in own else ONE
+            growth = 1 + self.shares[STEP] if result in separate else ONE
             for term in self.terms[result]:
                 if (share := self.shares.get(term.name)) is None:
                     continue
@@ -230,7 +230,7 @@ class RoundedStep:
                     sizes[term.name] = _shortened(share, factor, form)
                 else:
                     # Of a sum of two sizes, the part of second order counts with another term.
-                    sizes[term.name] = combine((share * beyond, form))
+                    sizes[term.name] = combine((share * growth, form))
         return sizes
 
     @property
@@ -241,8 +241,8 @@ class RoundedStep:
 
     def _exact(self, form: LinearForm) -> LinearForm:
         """Return what a form is without roundings."""
-        kept = len(form) - len(self.rounded)
-        return [*form[:kept], *(Fraction(0) for _ in form[kept:])]
+        end = len(form) - len(self.rounded)
+        return [*form[:end], *(Fraction(0) for _ in form[end:])]
 
 
 def _shortened(share: Fraction, factor: Fraction, form: LinearForm) -> LinearForm:
@@ -298,8 +298,8 @@ class SampledProgram:
     @property
     def _placing(self) -> tuple[str, ...]:
         """The terms of a reference that is computed within a sample."""
-        each = (results.get("error", {}) for results in self.listed.counts.values())
-        return tuple(dict.fromkeys(name for terms in each for name in terms if name != ERROR))
+        errors = (results.get("error", {}) for results in self.listed.counts.values())
+        return tuple(dict.fromkeys(name for terms in errors for name in terms if name != ERROR))
 
     @cached_property
     def stored(self) -> dict[str, str]:
@@ -323,7 +323,7 @@ class SampledProgram:
 
         They are ``command`` and next states, such as ``reference+``. Return bounds on roundings.
         """
-        given = {
+        inputs = {
             **{name: w[name] for name in self.stored},
             "angle": w["measured"],
             "torque": w["felt"],
@@ -331,18 +331,18 @@ class SampledProgram:
         }
         if law.law.commands == "position":
             # A position is rounded when read, the reference of an admittance when it moves.
-            given["position"] = w[ROUNDED_REFERENCE]
+            inputs["position"] = w[ROUNDED_REFERENCE]
         parts = step_parts(self.laws)
         numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
-        rounded = {name: w[name] for name in self.roundings}
-        step = self.listed.step(law, numbers, given, rounded, self.roundings)
+        roundings = {name: w[name] for name in self.roundings}
+        step = self.listed.step(law, numbers, inputs, roundings, self.roundings)
         sizes: dict[str, LinearForm] = {}
         moving = law.law.commands == "velocity"
         for name, result in self.listed.following.items():
             if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
                 continue
-            moved = ONE if moving and name in self.places else ZERO
-            w.set({f"{name}+": w.sum((ONE, step.result(result)), (moved, w[ROUNDED_REFERENCE]))})
+            share = ONE if moving and name in self.places else ZERO
+            w.set({f"{name}+": w.sum((ONE, step.result(result)), (share, w[ROUNDED_REFERENCE]))})
         if turn is not Turn.ADMITTANCE:
             streamed = ONE if self.step.interface is CommandInterface.POSITION else ZERO
             w.set({"command": w.sum((ONE, step.command()), (streamed, w[ROUNDED_REFERENCE]))})

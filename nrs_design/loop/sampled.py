@@ -50,10 +50,10 @@ class Sample:
     sizes: tuple[LinearForm, ...]
     command: LinearForm
 
-    def does(self, other: Sample) -> bool:
+    def does(self, sample: Sample) -> bool:
         """Tell whether another sample does the same."""
         mine = self.after, self.sent, self.sizes
-        return mine == (other.after, other.sent, other.sizes)
+        return mine == (sample.after, sample.sent, sample.sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,28 +70,28 @@ class SampledLoop:
         stored, calendar = self.program.stored, self.calendar
         place = [stored[name] for name in self.program.places]
         before = [stored[BEFORE]] if BEFORE in stored else []
-        held = [HELD] if calendar.holds else []
+        hold = [HELD] if calendar.holds else []
         others = [text for text in stored.values() if text not in (*place, *before)]
-        sent = (*self.drive.states, *before, *held, *calendar.sent)
-        return (*place, *sent, *others, *calendar.samples, DELTA)
+        leading = (*self.drive.states, *before, *hold, *calendar.sent)
+        return (*place, *leading, *others, *calendar.samples, DELTA)
 
     @cached_property
     def from_deflection(self) -> frozenset[str]:
         """The states that count from the deflection."""
-        stored, placed = (
+        stored, by_position = (
             self.program.stored,
             self.program.step.interface is CommandInterface.POSITION,
         )
-        held = (HELD,) if self.calendar.holds else ()
-        commands = (*held, *self.calendar.sent) if placed else ()
+        hold = (HELD,) if self.calendar.holds else ()
+        commands = (*hold, *self.calendar.sent) if by_position else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
 
     @cached_property
     def takes_force(self) -> bool:
         """Whether some law uses the force sample, so that delayed samples are states."""
-        felt = ONE, ZERO
+        spring = ONE, ZERO
         return not all(
-            self.sample(law, 0, felt).does(self.sample(law, 0, NOTHING))
+            self.sample(law, 0, spring).does(self.sample(law, 0, NOTHING))
             for law in self.program.laws
         )
 
@@ -101,14 +101,14 @@ class SampledLoop:
         return (*self.calendar.samples, *self.program.lags)
 
     def sample(
-        self, law: DiscreteLaw, age: int, touched: Contact, turn: Turn = Turn.BOTH
+        self, law: DiscreteLaw, age: int, contact: Contact, turn: Turn = Turn.BOTH
     ) -> Sample:
         """Return the result of a sample in a contact.
 
         `age` is that of the force sample. What `turn` does not compute holds what it had.
         """
         w, calendar, stored = self._wires(), self.calendar, self.program.stored
-        (k, b), memory = touched, self.drive.memory
+        (k, b), memory = contact, self.drive.memory
         pressed = ((k, w[DELTA]), *([(-k, w[memory])] if memory else []))
         w.rule("now", lambda: w.sum(*pressed, (b, w[OMEGA]), (ONE, w[FORCE_ERROR])))
         w.rule("felt", lambda: w[calendar.samples[age - 1]] if age else w["now"])
@@ -119,39 +119,39 @@ class SampledLoop:
         elif not w.has("command"):
             # The newest of the delayed commands is issued again.
             w.rule("command", lambda: w[HELD if calendar.holds else calendar.sent[0]])
-        limited = ZERO if turn.is_miss or turn is Turn.ADMITTANCE else ONE
-        sent = [
-            w.sum((ONE, w["command"]), (limited, w[CUT_OFF])),
+        cut_share = ZERO if turn.is_miss or turn is Turn.ADMITTANCE else ONE
+        commands = [
+            w.sum((ONE, w["command"]), (cut_share, w[CUT_OFF])),
             *(w[name] for name in calendar.sent),
         ]
         ages = [
             *([] if turn is Turn.MOTION else [w["now"]]),
             *(w[name] for name in calendar.samples),
         ]
-        after = {s: w[f"{n}+"] if w.has(f"{n}+") else w[n] for n, s in stored.items()}
-        after |= dict(zip(calendar.samples, ages, strict=False))
-        after |= dict(zip(calendar.sent, sent, strict=False))
-        after |= {HELD: sent[0]} if calendar.holds else {}
+        states = {s: w[f"{n}+"] if w.has(f"{n}+") else w[n] for n, s in stored.items()}
+        states |= dict(zip(calendar.samples, ages, strict=False))
+        states |= dict(zip(calendar.sent, commands, strict=False))
+        states |= {HELD: commands[0]} if calendar.holds else {}
         bounds = tuple(sizes.get(name, w.nothing) for name in self.program.roundings)
-        return Sample(w, after, sent, bounds, w["command"])
+        return Sample(w, states, commands, bounds, w["command"])
 
     def period(self, sample: Sample, rows: Rows) -> Period:
         """Return the map of a sample and of the flow after it; `rows` describe the drive."""
-        w, sent, within = sample.wires, sample.sent, self.calendar.timing.within
+        w, commands, ages = sample.wires, sample.sent, self.calendar.timing.within
         columns = [
             *(w[name] for name in self.drive.states),
             w[DELTA],
-            w.sum((ONE, sent[-1]), (ONE, w[FRICTION])),
-            *(w.sum((ONE, sent[age]), (-ONE, sent[age + 1])) for age in within),
+            w.sum((ONE, commands[-1]), (ONE, w[FRICTION])),
+            *(w.sum((ONE, commands[age]), (-ONE, commands[age + 1])) for age in ages),
         ]
 
-        after = dict(sample.after)
+        states = dict(sample.after)
         for name in (*self.drive.states, DELTA):
-            own = [(ONE, w[DELTA])] if name == DELTA else []
-            after[name] = w.sum(*own, *zip(rows[name], columns, strict=True))
-        delta = after[DELTA]
+            offset = [(ONE, w[DELTA])] if name == DELTA else []
+            states[name] = w.sum(*offset, *zip(rows[name], columns, strict=True))
+        delta = states[DELTA]
         moves = (
-            w.sum((ONE, after[s]), (-ONE, delta)) if s in self.from_deflection else after[s]
+            w.sum((ONE, states[s]), (-ONE, delta)) if s in self.from_deflection else states[s]
             for s in self.states
         )
         return Period(tuple(moves), sample.sizes, sample.command)

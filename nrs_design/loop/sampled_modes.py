@@ -53,45 +53,45 @@ class Modes:
         Where contact is lost anywhere, a controller moves freely as it does in one more contact.
         """
         modes: list[LocatedMode] = []
-        beside: list[LocatedMode] = []
-        where = modes if loss.anywhere else beside if loss is Loss.SURFACE else None
+        free: list[LocatedMode] = []
+        target = modes if loss.anywhere else free if loss is Loss.SURFACE else None
         for c in controllers:
             law = laws[c.name]
             modes += self._of_controller(c, law)
-            if c.contacts and where is not None:
-                where += self._of(c.name, (c.name, FREE), law, touches=FREE)
+            if c.contacts and target is not None:
+                target += self._of(c.name, (c.name, FREE), law, medium=FREE)
         law, turns = next(iter(laws.values())), self.loop.calendar.turns
         if turns[-1].is_miss:
             modes += self._without_law(turns[-1], law, self.environments, FREE)
-            if where is not None:
-                where += self._without_law(turns[-1], law, (), FREE)
+            if target is not None:
+                target += self._without_law(turns[-1], law, (), FREE)
         if Turn.MOTION in turns:
             # No force sample reaches them.
             contacts = self.environments if self._loaded else ()
             modes += self._without_law(Turn.MOTION, law, contacts)
-            beside += self._without_law(Turn.MOTION, law, contacts, FREE) if beside else ()
-        return modes, beside
+            free += self._without_law(Turn.MOTION, law, contacts, FREE) if free else ()
+        return modes, free
 
     def _of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
         """Yield the modes of a controller in all its contacts; in free motion if it has none."""
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
             # It is the same there as in contact, unless a sample or the motor feels the force.
-            touches = FREE if self.loop.shown_later or self._loaded else ""
-            yield from self._of(c.name, (c.name,), law, touches=touches)
-            contacts = self.environments if touches else ()
+            medium = FREE if self.loop.shown_later or self._loaded else ""
+            yield from self._of(c.name, (c.name,), law, medium=medium)
+            contacts = self.environments if medium else ()
         for e in contacts:
             yield from self._of(c.name, (c.name, e.name), law, e, contacts)
 
     def _without_law(
-        self, turn: Turn, law: DiscreteLaw, contacts: Sequence[Environment], *where: str
+        self, turn: Turn, law: DiscreteLaw, contacts: Sequence[Environment], *suffix: str
     ) -> Iterator[LocatedMode]:
         """Yield the modes of a sample at which no law is computed, in some contacts or in none."""
-        name, touches = (MISS, FREE) if turn.is_miss else (str(turn), "")
+        name, medium = (MISS, FREE) if turn.is_miss else (str(turn), "")
         for e in contacts:
             yield from self._of(f"/{name}", (name, e.name), law, e, contacts, (turn,))
         if not contacts:
-            yield from self._of(f"/{name}", (name, *where), law, turns=(turn,), touches=touches)
+            yield from self._of(f"/{name}", (name, *suffix), law, turns=(turn,), medium=medium)
 
     def _of(
         self,
@@ -101,22 +101,22 @@ class Modes:
         e: Environment | None = None,
         contacts: Sequence[Environment] = (),
         turns: Sequence[Turn] = (),
-        touches: str = "",
+        medium: str = "",
     ) -> Iterator[LocatedMode]:
         """Yield the modes of a law in a contact or in none, or of turns without a law."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
         head = Spot.named(*names)
         # A force sample matters to a law without force feedback only if it is delayed.
         sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
-        for spot, seen, flows in self._touching(e, contacts, sampled=sampled):
-            for turn, age, said in self._samples(law, turns, seen[0][1]):
-                for where, contact in seen:
+        for spot, samples, flows in self._touching(e, contacts, sampled=sampled):
+            for turn, age, label in self._samples(law, turns, samples[0][1]):
+                for place, contact in samples:
                     sample = self.loop.sample(law, age, contact, turn)
-                    for at, rows in flows:
+                    for flow, rows in flows:
                         yield LocatedMode(
                             group,
-                            head + spot + said + where + at,
-                            touches if e is None else e.name,
+                            head + spot + label + place + flow,
+                            medium if e is None else e.name,
                             self.loop.period(sample, rows),
                             begins=turn is Turn.BOTH,
                         )
@@ -133,9 +133,9 @@ class Modes:
         if self.loop.sample(law, first, contact).does(self.loop.sample(law, last, contact)):
             last = first
         for turn, age in product(turns, range(first, last + 1)):
-            said = [f"delay-{age}"] if last > first else []
-            said += [str(turn)] if turn is Turn.ADMITTANCE else []
-            yield turn, age, Spot.named(*said)
+            labels = [f"delay-{age}"] if last > first else []
+            labels += [str(turn)] if turn is Turn.ADMITTANCE else []
+            yield turn, age, Spot.named(*labels)
 
     def _touching(
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
@@ -144,52 +144,52 @@ class Modes:
         loaded, forced = self._loaded, self.loop.takes_force
         constants = [c for c in self.constants if c.contact in (None, e and e.name)]
         real = () if loaded or (e is not None and e.depends) else LOAD
-        for labels, held in self.drives or (((), self.held),):
-            for load, own in self._loads(e, contacts):
+        for labels, drive in self.drives or (((), self.held),):
+            for load, ranges in self._loads(e, contacts):
                 texts = (*load, *labels)
                 # The load of a drive is told from the sampled force, if a law takes that.
-                ends = labelled_ends(own if sampled and (forced or not loaded) else {})
-                seen = [
+                ends = labelled_ends(ranges if sampled and (forced or not loaded) else {})
+                samples = [
                     (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
                     for said, at in ends
                 ]
                 # The contact is no key: a flow names constants of a contact only if it is alone.
-                key = held, tuple(own.items()) if loaded else ()
+                key = drive, tuple(ranges.items()) if loaded else ()
                 if key not in self._known:
                     self._known[key] = tuple(
                         (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
-                        for point in held.flow(own, AGAIN if forced else LOAD)
+                        for point in drive.flow(ranges, AGAIN if forced else LOAD)
                     )
                 ends_of = [text.rpartition("-")[0] for text in texts]
-                yield spot_of(texts, ends_of, constants), seen, self._known[key]
+                yield spot_of(texts, ends_of, constants), samples, self._known[key]
 
     def _loads(
         self, e: Environment | None, contacts: Sequence[Environment]
     ) -> Iterator[tuple[tuple[str, ...], Mapping[str, Interval]]]:
         """Yield labels of a load, and where its stiffness and damping are."""
-        own = {} if e is None else dict(zip(LOAD, e.load, strict=True))
+        ranges = {} if e is None else dict(zip(LOAD, e.load, strict=True))
         if e is None or not self._loaded or (self.drives and e.depends):
-            yield (), own
+            yield (), ranges
         elif not self.drives:
             # Within a period it may become another one, or be lost.
-            yield (), anything_of(contacts, lost=self.loses)
+            yield (), anything_of(contacts, losable=self.loses)
         else:
-            for labels, values in labelled_ends(own):
+            for labels, values in labelled_ends(ranges):
                 yield labels, {symbol: Interval.point(value) for symbol, value in values.items()}
 
 
-def anything_of(environments: Iterable[Environment], *, lost: bool) -> dict[str, Interval]:
+def anything_of(environments: Iterable[Environment], *, losable: bool) -> dict[str, Interval]:
     """Return ranges of stiffness and damping that hold all environments, or free motion.
 
     `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
     """
-    each = [e.load for e in environments]
+    loads = [e.load for e in environments]
     return {
         symbol: Interval(
             ranges[0].nominal,
-            ZERO if lost else min(r.low for r in ranges),
+            ZERO if losable else min(r.low for r in ranges),
             max(r.high for r in ranges),
-            lost or len(ranges) > 1 or ranges[0].varies,
+            losable or len(ranges) > 1 or ranges[0].varies,
         )
-        for symbol, ranges in zip(LOAD, zip(*each, strict=True), strict=True)
+        for symbol, ranges in zip(LOAD, zip(*loads, strict=True), strict=True)
     }

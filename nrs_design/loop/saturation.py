@@ -73,13 +73,13 @@ def with_saturation(
     )
     lags = () if low_pass is None else low_pass.states
     start = _start(conditions, _rest(system.states, state.environments, lags))
-    limited = Assumption.create(
+    assumption = Assumption.create(
         "limited.signals",
         velocity=rounded_up(velocity, unit),
         command=rounded_up(command, conditions.command),
         filtered=low_pass and "filter",
     )
-    assumptions = (*system.assumptions, limited)
+    assumptions = (*system.assumptions, assumption)
     return replace(system, saturation=Saturation(signals, start), assumptions=assumptions)
 
 
@@ -126,23 +126,23 @@ def with_sampled_saturation(
                 errors=errors(integrals),
             )
         )
-    placed = any(law.law.commands == "position" for law in loop.program.laws)
-    rest = _rest(system.states, environments, loop.shown_later)
-    if placed:
-        rest = [*_with_error_before(loop, commands, rest)]
+    by_position = any(law.law.commands == "position" for law in loop.program.laws)
+    states = _rest(system.states, environments, loop.shown_later)
+    if by_position:
+        states = [*_with_error_before(loop, commands, states)]
     command, *integral = [rounded_up(signal.limit, signal.unit) for signal in signals]
-    limited = Assumption.create(
+    assumption = Assumption.create(
         "limited.sampled",
         command=command,
         clamped=bool(integral) and "integral",
         integral=tuple(integral),
         filtered=bool(loop.shown_later) and "samples",
     )
-    start = _start(conditions, rest, ERROR_BEFORE if placed else "")
+    start = _start(conditions, states, ERROR_BEFORE if by_position else "")
     return replace(
         system,
         saturation=Saturation(tuple(signals), start),
-        assumptions=(*system.assumptions, limited),
+        assumptions=(*system.assumptions, assumption),
     )
 
 
@@ -166,11 +166,11 @@ def _with_error_before(
 
 
 def _start(
-    conditions: OperatingConditions, states: Iterable[RationalMatrix], beside: str = ""
+    conditions: OperatingConditions, states: Iterable[RationalMatrix], extra: str = ""
 ) -> Start:
     force, unit = conditions.initial_force, conditions.axis.unit("N*m")
     largest = None if isinstance(force, str) else force
-    return Start("contact force", unit, tuple(states), largest, beside)
+    return Start("contact force", unit, tuple(states), largest, extra)
 
 
 def _physical(
@@ -180,9 +180,9 @@ def _physical(
     omega, unit = motion.output(n), coordinates(n)
     error = unit[_ERROR] if isinstance(motion, JointMotionLoop) else motion.integral(zero(n))
     (a, b), (c, d) = error[:2], omega[:2]
-    determinant, rest = a * d - b * c, zero(n - 2)
-    first = [d / determinant, -c / determinant, *rest]
-    second = [-b / determinant, a / determinant, *rest]
+    determinant, zeros = a * d - b * c, zero(n - 2)
+    first = [d / determinant, -c / determinant, *zeros]
+    second = [-b / determinant, a / determinant, *zeros]
     return error, omega, (first, second)
 
 
@@ -204,10 +204,10 @@ def _rest(
     settled = [Fraction(int(state in lags)) for state in states]
     sensed = [zero(len(states)), *([settled] if lags else [])]
     return [
-        _column(combine((1 / stiffness, unit[-1]), (ONE, shown)))
+        _column(combine((1 / stiffness, unit[-1]), (ONE, reading)))
         for environment in environments
         for _, stiffness in environment.stiffness.ends
-        for shown in sensed
+        for reading in sensed
     ]
 
 

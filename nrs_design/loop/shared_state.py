@@ -94,11 +94,11 @@ class SharedState:
         sensed = () if self.low_pass is None else self.low_pass.states
         # The deflection: continuous when the stiffness changes in contact.
         contact = () if self.is_placed else self.environments[0].law.states[:1]
-        own = self.beside if self.idle is not None else self.law.states
+        law_states = self.beside if self.idle is not None else self.law.states
         moving = self.placed.states if self.is_placed else self.motion.states
         if self.idle is not None and self.joint is None:
             moving = tuple(f"xi{i + 1}" for i in range(order))
-        return (*moving, *own, *sensed, *contact, *memories)
+        return (*moving, *law_states, *sensed, *contact, *memories)
 
     @property
     def is_placed(self) -> bool:
@@ -143,13 +143,13 @@ class SharedState:
         if self.offset != "none":
             return with_last(rows, lead(self.realization))
         integrated = (REFERENCE,) if law.commands == "velocity" else ()
-        own = (*law.states, *integrated, *others)
-        beside = self.beside if self.idle is not None else ()
-        alone = {self.names.index(name): decay for name in beside if name not in own}
+        active = (*law.states, *integrated, *others)
+        mixed = self.beside if self.idle is not None else ()
+        idle = {self.names.index(name): decay for name in mixed if name not in active}
         first = len(self.names) - len(self.memories)
         memories = enumerate(self.memories, first)
         return with_idle(
-            rows, alone | {i: values[_rate(e)] for i, e in memories if e != environment}
+            rows, idle | {i: values[_rate(e)] for i, e in memories if e != environment}
         )
 
 
@@ -184,19 +184,19 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
     controllers = state.design.controllers
     restless = [e for e in state.environments if not e.law.has_rest]
     for environment in restless:
-        at = ("environments", environment.name)
-        said = f"environment {environment.name} has no rest position ({environment.law.name}), "
+        path = ("environments", environment.name)
+        fault = f"environment {environment.name} has no rest position ({environment.law.name}), "
         if state.is_placed:
             yield AssemblyError(
-                f"{said}from which positions of position and force controllers count",
+                f"{fault}from which positions of position and force controllers count",
                 remedy="use another environment, or impedance controllers alone",
-                at=at,
+                at=path,
             )
         if len(state.environments) > 1:
             yield AssemblyError(
-                f"{said}so it shares no deflection with another environment",
+                f"{fault}so it shares no deflection with another environment",
                 remedy="let the controllers touch no other environment, or write a spec for each",
-                at=at,
+                at=path,
             )
     sprung = next((c.name for c in controllers if c.law.spring), None)
     if sprung is not None and restless:

@@ -87,22 +87,22 @@ def close_sampled_loop(
         conditions = replace(conditions, initial_force=None)
     drive = plant.contact_drive(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
-    held = HeldDrive(drive, loop.calendar.timing)
+    held_drive = HeldDrive(drive, loop.calendar.timing)
     loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
-    every = Modes(
+    builder = Modes(
         loop,
-        held,
+        held_drive,
         environments,
         tuple(constants),
         # A controller without contacts of its own is in any of them.
         loss.anywhere or not all(c.contacts for c in design.controllers),
-        tuple(held.points()) if points else (),
+        tuple(held_drive.points()) if points else (),
     )
-    modes, free = every.of_controllers(design.controllers, laws, loss)
+    modes, free = builder.of_controllers(design.controllers, laws, loss)
     items = (*modes, *free)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
     velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
-    pulls = tuple(force_rows(velocity, loop.states, could_pull(environments)))
+    tensions = tuple(force_rows(velocity, loop.states, could_pull(environments)))
     outputs = outputs_of(velocity, loop.states, environments, conditions.torque) if channels else ()
     if drive.speed is not None:
         # The velocity jumps after the sample, and with it a damped force.
@@ -110,7 +110,7 @@ def close_sampled_loop(
         outputs = () if damped else tuple(one for one in outputs if one.name == "force")
     # Points are at the period itself, where a dwell time has more samples.
     period = sampling.step if points else sampling.longest_step
-    clock, rest, counted = count_stays(conditions.switching, grouped(items), period)
+    clock, rules, counts = count_stays(conditions.switching, grouped(items), period)
     driven, unlimited = _motor_command(
         conditions.largest_command, conditions.command, loop, channels
     )
@@ -122,10 +122,10 @@ def close_sampled_loop(
         assumptions=(
             *assume_sampled_loop(conditions, sampling, plant, loop, laws, design, loss),
             *unlimited,
-            *counted,
+            *counts,
         ),
-        switching=assemble_switching(rest, grouped(modes), _resets(conditions.idle, loop, design)),
-        contact=lost_on_surface((item.mode for item in free), pulls, conditions.contact)
+        switching=assemble_switching(rules, grouped(modes), _resets(conditions.idle, loop, design)),
+        contact=lost_on_surface((item.mode for item in free), tensions, conditions.contact)
         if free
         else None,
         sample_time=sampling.longest_step,
@@ -133,7 +133,7 @@ def close_sampled_loop(
         outputs=(*outputs, *driven),
         roundings=tuple(_roundings(loop, channels, items)),
         clock=_clock(sampling, items) or clock,
-        flights=flights_of(modes, environments, pulls) if loss.anywhere else None,
+        flights=flights_of(modes, environments, tensions) if loss.anywhere else None,
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None:
@@ -181,10 +181,10 @@ def _resets(
 
 def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:
     """Return the clock of rounds, or of missed deadlines."""
-    begins = tuple(item.name for item in items if item.begins)
+    first_modes = tuple(item.name for item in items if item.begins)
     if sampling.misses is not None:
-        return clock_of(automaton_of(*sampling.misses.window), begins)
-    return Clock(sampling.round, begins) if sampling.round > 1 else None
+        return clock_of(automaton_of(*sampling.misses.window), first_modes)
+    return Clock(sampling.round, first_modes) if sampling.round > 1 else None
 
 
 def _channels(
@@ -209,11 +209,11 @@ def _roundings(
     loop: SampledLoop, channels: Sequence[Channel], items: Sequence[LocatedMode]
 ) -> Iterator[Rounding]:
     """Yield what the arithmetic adds, with rows over the states and the declared disturbances."""
-    n, named = len(loop.states), {channel.name for channel in channels}
-    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    n, names = len(loop.states), {channel.name for channel in channels}
+    places = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in names)]
     for j, name in enumerate(loop.program.roundings):
         sizes = (item.period.sizes[j] for item in items)
-        rows = (RationalMatrix.from_rows([[size[i] for i in kept]]) for size in sizes)
+        rows = (RationalMatrix.from_rows([[size[i] for i in places]]) for size in sizes)
         columns = (item.column(len(INPUTS) + j) for item in items)
         yield Rounding(name, tuple(columns), tuple(rows))
 
@@ -240,21 +240,21 @@ def _motor_command(
     shares = list(zip(form[end:], sample.sizes, strict=True))
     # Largest change of the command by disturbances of its own sample.
     inputs = [(ONE, form[n:end]), *((abs(c), size[n:end]) for c, size in shares)]
-    at_once = sum((c * _largest(row, bounds) for c, row in inputs), ZERO)
-    rounded = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
+    direct = sum((c * _largest(row, bounds) for c, row in inputs), ZERO)
+    roundings = [[c * v for v in size[:n]] for c, size in shares if c and any(size[:n])]
     rows = tuple(
         RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
-        for signed in product(*([row, [-v for v in row]] for row in rounded))
+        for signed in product(*([row, [-v for v in row]] for row in roundings))
     )
     limit = float32_not_above(largest)
-    left = limit - at_once
-    name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
+    left = limit - direct
+    name = f"{MOTOR_COMMAND} before errors of its sample" if direct else MOTOR_COMMAND
     output = Output(name, unit, rows, left if left > 0 else None)
     assumption = Assumption.create(
         "not-quantized.command",
         limit=rounded_down(limit, unit),
-        less=at_once > 0 and "errors",
-        at_once=at_once > 0 and rounded_up(at_once, unit),
+        less=direct > 0 and "errors",
+        at_once=direct > 0 and rounded_up(direct, unit),
         output=name,
     )
     return (output,), (assumption,)

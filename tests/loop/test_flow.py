@@ -395,7 +395,7 @@ def test_what_is_constant_does_not_change_within_a_period(changing):
 def test_a_contact_is_constant_where_nothing_else_is_touched(contacts, lost, constant):
     interval = Interval(F(40), F(20), F(60), varies=False)
     each = [Environment(str(i), Elastic, (interval,)) for i in range(contacts)]
-    assert anything_of(each, lost=lost)["k"].is_constant is constant
+    assert anything_of(each, losable=lost)["k"].is_constant is constant
 
 
 def test_free_motion_is_the_same_wherever_it_is():

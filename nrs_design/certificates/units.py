@@ -17,11 +17,11 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
         return {}
     # Controllers are slow to load; a certificate of given matrices needs no controllers.
     from nrs_design.controllers.controller_design import units_of
-    from nrs_design.loop.assumptions import command_in
+    from nrs_design.loop.assumptions import find_command_unit
     from nrs_design.models.axis import COMMAND_UNITS, find_axis
 
     system = certificate.system
-    command = command_in(system.assumptions)
+    command = find_command_unit(system.assumptions)
     if command not in COMMAND_UNITS:
         raise CertificateError(f"it has commands in {quoted(command)}, which no motor takes")
     return units_of(certificate.gains, command, find_axis(system.states))

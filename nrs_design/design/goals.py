@@ -357,13 +357,13 @@ class ForceRequirement(AbstractRequirement):
         if self.approach.offset != "none" or self.axis is None:
             gain = float(self.law.gains["Kp"])
             return steady_force_error(self.motion, contact.stiffness, gain, self.approach)
-        cut = self.axis.cut(self.law, contact, place)
+        cut = self.axis.find_loop(self.law, contact, place)
         return abs(float(cut.opened[-1] / cut.closed[-1])) if cut.closed[-1] else math.inf
 
     def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
         """Return the open loop at a corner."""
         assert self.axis is not None, "without an axis there are no loops"
-        cut = self.axis.cut(self.law, corner.contact, corner.place)
+        cut = self.axis.find_loop(self.law, corner.contact, corner.place)
         return Loops.of_cut(cut, self.axis.period)
 
 

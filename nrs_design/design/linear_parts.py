@@ -193,7 +193,7 @@ def open_loops(
         for corner in () if given.environment is None else task.corners(given):
             opened, closed = axis.modes(law, corner.contact, corner.place)
             column, row = _factors(opened, closed)
-            cut = Loops.of_cut(axis.cut(law, corner.contact, corner.place), axis.period)
+            cut = Loops.of_cut(axis.find_loop(law, corner.contact, corner.place), axis.period)
             A, B, C = (np.array(M, dtype=np.float64) for M in (opened, [column], [row]))
             found.append(OpenLoop(controller.name, corner.label, A, B.T, -C, cut))
     return tuple(found)

@@ -97,7 +97,7 @@ def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
     def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
         place, factor = motor_at(axis, values)
         free, damped = (
-            factor * polynomial(*axis.cut(law, KelvinVoigt(ZERO, b), place).closed)
+            factor * polynomial(*axis.find_loop(law, KelvinVoigt(ZERO, b), place).closed)
             for b in (ZERO, ONE)
         )
         return free, damped - free

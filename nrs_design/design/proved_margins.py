@@ -109,7 +109,7 @@ class RangedLoop:
         factor *= rational(
             prod((contact[name] for name in self.environment.law.inverse), start=ONE)
         )
-        loop = self.axis.cut(self.law, self.environment.evaluate(contact), place)
+        loop = self.axis.find_loop(self.law, self.environment.evaluate(contact), place)
         first = loop.free if held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)
 

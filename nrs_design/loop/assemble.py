@@ -24,12 +24,12 @@ from nrs_design.loop.located import (
     LocatedMode,
     Period,
     Spot,
+    add_constants,
     constant_lateness,
     constants_of,
     grouped,
     labelled_ends,
     spot_of,
-    with_constants,
 )
 from nrs_design.models.axis import AxisType
 from nrs_design.models.interval import Interval
@@ -48,19 +48,19 @@ if TYPE_CHECKING:
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
-DECLARED = Fraction(1)
+UNSCALED = Fraction(1)
 # Points of the ranges of a sampled loop.
 ENDS, NOMINAL = "ends", "nominal"
 POINTS = (ENDS, NOMINAL)
 # Switches by a rule for misses.
 MAX_TRANSITIONS = 200_000
-ONCE = Stay(Fraction(1), Fraction(1))
+SINGLE_STEP = Stay(Fraction(1), Fraction(1))
 
 
 def assemble_from_text(
     spec: Spec,
     gains: Mapping[str, Mapping[str, str]],
-    scale: Fraction = DECLARED,
+    scale: Fraction = UNSCALED,
     plant: Plant | None = None,
     points: str = "",
 ) -> SwitchedSystem:
@@ -85,7 +85,7 @@ def assemble_from_text(
     return assemble(spec, plant, design, scale, points=points)
 
 
-def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> SwitchedSystem:
+def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = UNSCALED) -> SwitchedSystem:
     """Return the system of a spec of given matrices, one mode for each corner of its boxes."""
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
@@ -103,7 +103,7 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
         assumptions=assume_matrices(spec, parameters, scale),
         switching=switching,
     )
-    return with_constants(system, constant_parameters(parameters), items)
+    return add_constants(system, constant_parameters(parameters), items)
 
 
 def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> dict[str, Interval]:
@@ -141,7 +141,7 @@ def corner_modes(mode: ModeSpec, parameters: Mapping[str, Interval]) -> Iterator
         raise InternalError(f"mode {mode.name} is not affine in the parameters")
     constants = constant_parameters(parameters)
     for labels, A in corners:
-        spot = Spot.named(mode.name) + spot_of(labels, ranges, constants)
+        spot = Spot.from_names(mode.name) + spot_of(labels, ranges, constants)
         yield LocatedMode(mode.name, spot, "", Period(A))
 
 
@@ -156,13 +156,13 @@ def modes_with_misses(
     from nrs_design.spec.misses import automaton_of
 
     automaton = automaton_of(*rule.window)
-    # Modes by miss and by the state after them, in the order of states.
+    # Keys: whether the deadline is missed, and the state of the automaton after the step.
     groups: dict[tuple[bool, int], tuple[LocatedMode, ...]] = {}
     for missed, targets in ((False, automaton.hit), (True, automaton.miss)):
         corners = [item for item in items if (item.group == rule.mode) is missed]
         for target in sorted({t for t in targets if t is not None}):
             groups[missed, target] = tuple(
-                replace(item, spot=item.spot + Spot.named(f"s{target}")) for item in corners
+                replace(item, spot=item.spot + Spot.from_names(f"s{target}")) for item in corners
             )
     transitions: list[tuple[str, str]] = []
     dwells: list[tuple[str, Stay]] = []
@@ -179,7 +179,7 @@ def modes_with_misses(
         for source in sources:
             transitions += ((source.name, mode.name) for mode in after if mode is not source)
             if source.name not in names:
-                dwells.append((source.name, ONCE))
+                dwells.append((source.name, SINGLE_STEP))
     modes = tuple(mode for corners in groups.values() for mode in corners)
     return modes, Switching(Fraction(1), tuple(transitions), stays=tuple(dwells))
 
@@ -188,7 +188,7 @@ def assemble(
     spec: InteractionDesignSpec,
     plant: Plant,
     design: ControllerDesign,
-    scale: Fraction = DECLARED,
+    scale: Fraction = UNSCALED,
     *,
     points: str = "",
 ) -> SwitchedSystem:
@@ -212,7 +212,9 @@ def assemble(
         delay = conditions.constant_delay_key, conditions.command_delay, sampling.step
         constants = (*constants, constant_lateness(*delay))
     unit = spec.axis.unit
-    constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
+    constants = tuple(
+        replace(c, fixed=replace(c.fixed, unit=unit(c.fixed.unit))) for c in constants
+    )
     modes: Sequence[LocatedMode]
     if sampling is None:
         from nrs_design.loop.close_loop import close_loop
@@ -224,7 +226,7 @@ def assemble(
         system, modes = close_sampled_loop(
             conditions, plant, design, constants, points=bool(points)
         )
-    system = with_constants(system, constants, modes)
+    system = add_constants(system, constants, modes)
     period = None if sampling is None else sampling.outer
     # Environments with memory stand at their nominal values at all points.
     has_memory = any(e.law.has_memory for e in plant.select_environments(design.contacts))
@@ -239,10 +241,10 @@ def assemble(
         *((assume("range.points", points=points, but=but),) if points else ()),
         *assume_constants(system.switching),
     )
-    return _on_axis(replace(system, assumptions=assumptions), spec.axis)
+    return _convert_units(replace(system, assumptions=assumptions), spec.axis)
 
 
-def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
+def _convert_units(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
     """Name the units of an axis in the place of those of one that turns; no number changes."""
     if axis is AxisType.ROTARY:
         return system

@@ -25,7 +25,7 @@ assume = Assumption.create
 GIVEN_MATRICES = (assume("matrices.given"), assume("at-a-switch.any-signal", which="one"))
 COMMAND_UNIT = "command-unit.unit"
 # Sentence ids: for one mode or controller, and for every one.
-_STAYS = {
+_DWELL_IDS = {
     "dwell_time": ("rules.stays", "rules.all-stay"),
     "longest_dwell_time": ("rules.left", "rules.all-left"),
 }
@@ -81,7 +81,7 @@ def assume_rules(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
         return (assume("any-signal.all"),)
     found = []
     for (key, *names), dwell in rules.dwell_times():
-        one, general = _STAYS[key]
+        one, general = _DWELL_IDS[key]
         time = _time_text(dwell)
         found.append(
             assume(one, noun=noun, name=names[0], time=time)
@@ -106,7 +106,7 @@ def assume_scale(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (assume("range.scaled", scale=scale),)
 
 
-def command_in(assumptions: Iterable[Assumption]) -> str:
+def find_command_unit(assumptions: Iterable[Assumption]) -> str:
     """Return the unit of the motor command that the assumptions state; rpm by default."""
     units = (dict(item.fields).get("unit", ()) for item in assumptions if item.id == COMMAND_UNIT)
     return next((unit for stated in units for unit in stated), THESIS_COMMAND)

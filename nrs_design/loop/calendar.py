@@ -49,7 +49,7 @@ class CommandTiming:
     latest: Fraction = ZERO
     jitter: Fraction = ZERO  # Largest deviation of a period from its nominal length, in s
     # The time from every sample to its command in s, of all that may be, and periods do not differ.
-    at: Fraction | None = None
+    delay: Fraction | None = None
 
     @property
     def lengths(self) -> Interval:
@@ -59,7 +59,7 @@ class CommandTiming:
     @property
     def steps(self) -> Interval:
         """Lengths of the periods in s; one length if the delay is the same at every sample."""
-        return self.lengths if self.at is None else Interval.point(self.period)
+        return self.lengths if self.delay is None else Interval.point(self.period)
 
     @property
     def oldest(self) -> int:
@@ -77,7 +77,7 @@ class CommandTiming:
         return self.earliest < self.latest or self.jitter > 0
 
     @property
-    def within(self) -> range:
+    def new_ages(self) -> range:
         """Ages of the commands that may take effect within a period, the oldest first."""
         return range(self.oldest - 1, self.newest - 1, -1)
 
@@ -85,17 +85,17 @@ class CommandTiming:
         """Yield times that are attained at every sample, with the label of each."""
         if not self.varies:
             yield (), self
-        elif len(self.within) == 1 and not self.jitter:
-            (age,) = self.within
-            yield (f"h{age}-max",), replace(self, at=self.earliest)
-            yield (f"h{age}-min",), replace(self, at=self.latest)
+        elif len(self.new_ages) == 1 and not self.jitter:
+            (age,) = self.new_ages
+            yield (f"h{age}-max",), replace(self, delay=self.earliest)
+            yield (f"h{age}-min",), replace(self, delay=self.latest)
         else:
-            yield (), replace(self, at=self.latest)
+            yield (), replace(self, delay=self.latest)
 
-    def left(self, age: int) -> Interval:
+    def time_left(self, age: int) -> Interval:
         """Return the time in s, from 0 to a period, left of it with commands of an age or newer."""
-        if self.at is not None:
-            begin = min(max(self.at - age * self.period, ZERO), self.period)
+        if self.delay is not None:
+            begin = min(max(self.delay - age * self.period, ZERO), self.period)
             return Interval.point(self.period - begin)
         shortest, longest = self.lengths.low, self.lengths.high
         bounds = self.earliest - age * longest, self.latest - age * shortest
@@ -113,7 +113,7 @@ class Calendar:
     turns: tuple[Turn, ...] = (Turn.BOTH,)  # The tasks of a round
 
     @property
-    def sent(self) -> tuple[str, ...]:
+    def pending(self) -> tuple[str, ...]:
         """The commands of samples before that are still on their way, the newest first."""
         return tuple(f"u {age} before" for age in range(1, self.timing.oldest + 1))
 
@@ -125,7 +125,7 @@ class Calendar:
     @property
     def holds(self) -> bool:
         """Whether a command outlasts a sample, and is not on its way anyway."""
-        return not self.sent and not {Turn.ADMITTANCE, Turn.HELD}.isdisjoint(self.turns)
+        return not self.pending and not {Turn.ADMITTANCE, Turn.HELD}.isdisjoint(self.turns)
 
 
 def turns_of(sampling: SamplingSpec) -> tuple[Turn, ...]:

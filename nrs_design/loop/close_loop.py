@@ -35,7 +35,7 @@ from nrs_design.loop.located import (
     spot_of,
 )
 from nrs_design.loop.loop_assumptions import assume_loop
-from nrs_design.loop.saturation import with_saturation
+from nrs_design.loop.saturation import add_saturation
 from nrs_design.loop.shared_state import SharedState, shared_state
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
@@ -63,14 +63,19 @@ def close_loop(
     constants: Sequence[ConstantParameter] = (),
 ) -> tuple[SwitchedSystem, Sequence[LocatedMode]]:
     """Return the system of a loop in continuous time, and its modes."""
-    state, has_saturation = shared_state(conditions, plant, design), conditions.initial_force is not None
+    state, has_saturation = (
+        shared_state(conditions, plant, design),
+        conditions.initial_force is not None,
+    )
     rules = conditions.switching
     loss = _loss_of(state, conditions.contact, rules)
     items: list[LocatedMode] = []
     free: list[LocatedMode] = []
     groups: dict[str, dict[str, None]] = {}
     for c in design.controllers:
-        modes = [*_modes(c, state, _touched(c, state), constants, by_contact=rules.names_contacts)]
+        modes = [
+            *_modes(c, state, _find_contacts(c, state), constants, by_contact=rules.names_contacts)
+        ]
         air = [*_modes(c, state, [AIR], constants)] if loss is not Loss.NEVER else []
         modes += air if loss.anywhere else ()
         free += air
@@ -85,7 +90,9 @@ def close_loop(
         states=state.names,
         modes=tuple(item.mode for item in items),
         assumptions=tuple(
-            assume_loop(state, rules, losable=losable, free=loss.anywhere, has_saturation=has_saturation)
+            assume_loop(
+                state, rules, losable=losable, free=loss.anywhere, has_saturation=has_saturation
+            )
         ),
         switching=assemble_switching(rules, grouped(items), _resets(state, groups)),
         contact=lost_on_surface((item.mode for item in free), tensions, conditions.contact)
@@ -96,8 +103,10 @@ def close_loop(
     )
     if conditions.disturbances is not None:
         _check_memory(state.environments)
-        system = with_command(system, state, conditions.disturbances, conditions.torque)
-    return with_saturation(system, conditions, plant.actuator, state) if has_saturation else system, items
+        system = add_command(system, state, conditions.disturbances, conditions.torque)
+    return add_saturation(
+        system, conditions, plant.actuator, state
+    ) if has_saturation else system, items
 
 
 def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> Loss:
@@ -108,7 +117,7 @@ def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> L
     """
     environments = state.environments
     sprung = {bool(c.law.spring) for c in state.design.controllers}
-    loss = Loss.of(contact, environments, state.design, slowed=False)
+    loss = Loss.classify(contact, environments, state.design, slowed=False)
     modelled = (
         loss in (Loss.ANYWHERE, Loss.SURFACE)
         and bool(environments)
@@ -150,13 +159,13 @@ def _resets(
         switches = permutations((c.name for c in controllers), 2)
     elif state.idle is not None and state.idle.reset:
         switches = leaving_impedance(controllers)
-    zeroed = state.names[-1:] if state.offset == "measured" else state.beside
+    zeroed = state.names[-1:] if state.offset == "measured" else state.mixed_states
     map_ = zeroing(state.names, zeroed)
     for source, target in switches:
         yield from ((*pair, map_) for pair in product(groups[source], groups[target]))
 
 
-def _touched(c: Controller, state: SharedState) -> Sequence[Environment | None]:
+def _find_contacts(c: Controller, state: SharedState) -> Sequence[Environment | None]:
     """Return the contacts of a controller; None, and all that it feels, if it takes no force."""
     environments = {environment.name: environment for environment in state.environments}
     extra = state.environments if state.feels else ()
@@ -175,20 +184,20 @@ def _modes(
     for e in contacts:
         place = () if e is None else (e.name,)
         name, known = "/".join((c.name, *place)), (None, *place)
-        box = state.contact_box(e).beside(state.motor_box)
+        box = state.contact_box(e).join(state.motor_box)
         # Dependent stiffness and damping do not attain every corner.
         real = state.motor_box.ranges if e is not None and e.depends else box.ranges
         relevant = [constant for constant in constants if constant.contact in known]
         for labels, rows in box.corners(partial(state.rows, c.law, e), name):
             yield LocatedMode(
                 name if by_contact else c.name,
-                Spot.named(c.name, *place) + spot_of(labels, real, relevant),
+                Spot.from_names(c.name, *place) + spot_of(labels, real, relevant),
                 "".join(place),
                 Period(rows),
             )
 
 
-def with_command(
+def add_command(
     system: SwitchedSystem, state: SharedState, disturbances: Bounds, torque: Fraction
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.

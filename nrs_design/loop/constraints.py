@@ -45,8 +45,8 @@ def assemble_switching(
     transitions = None
     if rules.transitions is not None:
         self_pairs = ((name, name) for name in groups)
-        transitions = _limited(_expand(chain(self_pairs, rules.transitions), groups))
-    jumps = _limited(
+        transitions = _check_count(_expand(chain(self_pairs, rules.transitions), groups))
+    jumps = _check_count(
         Reset(*pair, matrix)
         for source, target, matrix in resets
         for pair in _expand([(source, target)], groups)
@@ -89,7 +89,7 @@ def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]
                 yield a, b
 
 
-def _limited(switches: Iterator[T]) -> tuple[T, ...]:
+def _check_count(switches: Iterator[T]) -> tuple[T, ...]:
     result = tuple(islice(switches, MAX_ASSEMBLED + 1))
     if len(result) > MAX_ASSEMBLED:
         raise AssemblyError(

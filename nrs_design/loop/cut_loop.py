@@ -56,7 +56,7 @@ Polynomial = tuple[Fraction, ...]
 # Decay and driving rate of the memory of a contact; None without memory.
 Memory: TypeAlias = tuple[Fraction, Fraction] | None
 REMEMBERED = "damper deflection [rad]"
-_KEPT = 512
+_CACHE_SIZE = 512
 # Shares of the force in the loops of `CutLoop`, in its order.
 _OPENED, _FREE = ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
 _CUTS = _OPENED, WHOLE, _FREE
@@ -68,7 +68,7 @@ class Place:
 
     motor: Actuator  # Motor at a corner of its ranges, or the nominal motor
     age: int = 0  # Constant age of the force sample; zero in continuous time
-    late: Fraction = ZERO  # From a sample to its command in s, always the same
+    lateness: Fraction = ZERO  # From a sample to its command in s, always the same
     texts: tuple[str, ...] = ()  # Deviations from nominal; the age if there are several
 
 
@@ -116,7 +116,7 @@ class AbstractAxis(ABC):
         a and b, and without inertia there is no a. The spring Kt is in N m/rad; zero is none.
         """
 
-    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+    def find_loop(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         """Return the loop of a controller at fixed parameters of the contact and a place."""
         return self._loop(self.rows(law, contact, place, share) for share in _CUTS)
 
@@ -132,7 +132,7 @@ class ContinuousAxis(AbstractAxis):
     """An axis whose law is never sampled."""
 
     realization: Realization
-    joint: Joint | None = None  # The motor in its physical state, where it has ranges or a load
+    joint: Joint | None = None  # Motor in physical states; None without ranges and load
     low_pass: LowPass | None = None
 
     @property
@@ -140,17 +140,17 @@ class ContinuousAxis(AbstractAxis):
         """There is none."""
         return
 
-    def motion_at(self, motor: Actuator) -> Realization | JointMotionLoop:
+    def find_motion(self, motor: Actuator) -> Realization | JointMotionLoop:
         """Return the motion loop with a motor."""
         if self.joint is None:
             return self.realization
-        return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
+        return self.joint.evaluate({"Km": motor.gain, "tau": motor.time_constant})
 
     def rows(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare = WHOLE
     ) -> Rows:
         """Return a mode."""
-        motion = self.motion_at(place.motor)
+        motion = self.find_motion(place.motor)
         if law.commands == "position":
             loop = motion if isinstance(motion, Realization) else motion.position_loop
             return position_mode(loop, law, contact, self.low_pass, share=share)
@@ -164,20 +164,20 @@ class ContinuousAxis(AbstractAxis):
     ) -> list[CutLoop]:
         """Return the loops of three admittances; without inertia is a limit of the same."""
         return [
-            CutLoop(*(tuple(law.Mt * c for c in p) for p in self.cut(law, contact, place)))
+            CutLoop(*(tuple(law.Mt * c for c in p) for p in self.find_loop(law, contact, place)))
             for law in (Admittance(Mt, Bt, spring) for Mt, Bt in COORDINATES)
         ]
 
 
 @dataclass(frozen=True, slots=True)
 class ProcessorAxis(AbstractAxis):
-    """An axis whose law a processor computes; `takes` is None for the commands of a motor."""
+    """An axis with a sampled law; `interface` is None where the axis commands a motor."""
 
     motion: ProportionalDerivative
     sampling: SamplingSpec
     drive: Drive
     low_pass: LowPass | None = None
-    takes: CommandInterface | None = None
+    interface: CommandInterface | None = None
 
     @property
     def period(self) -> Fraction:
@@ -197,19 +197,21 @@ class ProcessorAxis(AbstractAxis):
         """Return the loops of three admittances."""
         T = round_float32(self.sampling.outer)
         laws = [Admittance.discrete(a if inert else None, b, T, spring) for a, b in COORDINATES]
-        return [self._loop(self._step(law, contact, place, share) for share in _CUTS) for law in laws]
+        return [
+            self._loop(self._step(law, contact, place, share) for share in _CUTS) for law in laws
+        ]
 
     def _loop(self, modes: Iterable[Rows]) -> CutLoop:
         loops = [*map(characteristic, modes)]
         while all(p[-1] == 0 for p in loops):  # A force sample that leaves its last place.
             loops = [p[:-1] for p in loops]
-        return CutLoop(*(on_the_axis(p, self.period) for p in loops))
+        return CutLoop(*(apply_bilinear(p, self.period) for p in loops))
 
     def _step(
         self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place, share: ForceShare
     ) -> Rows:
         """Return the map of a period in which a share of the force acts."""
-        if share.carried and not share.sensed and self.takes is CommandInterface.VELOCITY:
+        if share.carried and not share.sensed and self.interface is CommandInterface.VELOCITY:
             # A spring that draws the measured position enters the law where the force does, so it
             # is cut as well.
             law = DiscreteLaw(law.law, {n: x for n, x in law.numbers.items() if n != "Kt"})
@@ -231,7 +233,7 @@ class ProcessorAxis(AbstractAxis):
 
 
 # Laws and contacts of a spec share what touches nothing, and the motor.
-@lru_cache(maxsize=_KEPT)
+@lru_cache(maxsize=_CACHE_SIZE)
 def _sampled_loop(
     axis: ProcessorAxis, law: DiscreteLaw, place: Place, carried: Contact, memory: Memory
 ) -> tuple[SampledLoop, Flow]:
@@ -239,8 +241,8 @@ def _sampled_loop(
     T = axis.sampling.outer
     low_pass = None if axis.low_pass is None else axis.low_pass.discretize(T)
     D = axis.motion.difference_gain(axis.sampling.period.exact)
-    step = StepFrame(axis.motion.Kp, D, low_pass, interface=axis.takes)
-    timing = CommandTiming(axis.sampling.step, place.late, place.late)
+    step = StepFrame(axis.motion.Kp, D, low_pass, interface=axis.interface)
+    timing = CommandTiming(axis.sampling.step, place.lateness, place.lateness)
     known = axis.drive.fix_values({"tau": place.motor.time_constant, GAIN: place.motor.gain})
     if memory is not None:
         known = known.remembering(REMEMBERED, [*map(Interval.point, memory)])
@@ -261,7 +263,7 @@ def axis_of(
     ranges = plant.actuator_ranges
     if sampling is None:
         loop = plant.motion_loop(motion.Kp, motion.Kd)
-        joint = Joint.of(plant, motion)
+        joint = Joint.from_plant(plant, motion)
         return ContinuousAxis(tuple(_places(ranges, (0, 0))), realize(loop), joint, low_pass)
     if sampling.outer < sampling.period.exact:
         return None
@@ -294,7 +296,7 @@ def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
     return tuple(map(fraction, reversed(found)))
 
 
-def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
+def apply_bilinear(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
     """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``.
 
     The polynomial is in z, of degree n, highest power first; T is the period.

@@ -35,12 +35,12 @@ class Entries:
         """Return ``G = [[A, B], [0, 0]]`` at some numbers, or its derivative by one of them."""
         return _filled(self.drive.rates, values, symbol, self.drive.order + 1)
 
-    def at(self, values: Mapping[str, Any], h: arb) -> arb_mat:
+    def evaluate(self, values: Mapping[str, Any], h: arb) -> arb_mat:
         """Return the entries at some numbers and a time."""
         return self.jet(values, h, "", h, 0)[0]
 
     def acting(self, values: Mapping[str, Any]) -> list[list[bool]]:
-        """Return the entries that are not identically zero, row by row as `at`."""
+        """Return the entries that are not identically zero, row by row as `evaluate`."""
         G = _sizes(self.rates(values))
         n, m = self.drive.order, self.drive.order + 1
         paths = step = G
@@ -56,13 +56,15 @@ class Entries:
             found.append([not bool(row[0, j] == 0) for j in range(m)])
         return found
 
-    def jet(self, values: Mapping[str, Any], h: arb, symbol: str, width: arb, order: int) -> list[arb_mat]:
+    def jet(
+        self, values: Mapping[str, Any], h: arb, symbol: str, width: arb, order: int
+    ) -> list[arb_mat]:
         """Return the entries and their Taylor coefficients along the range of a number.
 
-        They are in shares of the width; `by` is the number, or empty for the time. With ``G = G0 +
-        t D``, those of ``exp(G h)`` are the first row of blocks of the exponential of the block
-        matrix with ``G0 h`` on the diagonal and ``D h`` beside it. Those by the time are ``(width
-        G)^k exp(G h)/k!``.
+        They are in shares of the width. `symbol` names the number; it is empty for the time. With
+        ``G = G0 + t D``, those of ``exp(G h)`` are the first row of blocks of the exponential of
+        the block matrix with ``G0 h`` on the diagonal and ``D h`` beside it. Those by the time are
+        ``(width G)^k exp(G h)/k!``.
         """
         from flint import arb_mat
 
@@ -85,7 +87,7 @@ class Entries:
                 found[k].append([row[0, j] for j in range(m)])
         return [arb_mat(rows) for rows in found]
 
-    def moved(self, values: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
+    def bound_change(self, values: Mapping[str, Any], h: arb, widths: Mapping[str, arb]) -> arb_mat:
         """Return bounds on the change of the entries under a load that varies within the time.
 
         `widths` are those of the ranges of the load. Let ``A(s) = A + (k(s) - k) N`` be the
@@ -99,7 +101,7 @@ class Entries:
         """
         from flint import arb_mat
 
-        # A velocity that jumps would have a row of its own; a memory does not act on it.
+        # A velocity that jumps would need another row; drives with such a velocity carry no load.
         assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
         M, total = _sizes(self.rates(values)), arb_mat(m, m)
@@ -151,17 +153,17 @@ def exact_rows(M: MultiAffine, values: Mapping[str, Fraction]) -> list[list[Frac
 
 
 def highest(x: arb) -> Fraction:
-    """Return a number that is not below any of a ball; an `OverflowError` if there is none."""
+    """Return an upper bound of a ball; an `OverflowError` for an unbounded ball."""
     return fraction_of(_finite(x).upper())
 
 
 def lowest(x: arb) -> Fraction:
-    """Return a number that is not above any of a ball; an `OverflowError` if there is none."""
+    """Return a lower bound of a ball; an `OverflowError` for an unbounded ball."""
     return fraction_of(_finite(x).lower())
 
 
 def middle(x: arb) -> Fraction:
-    """Return the middle of a ball; an `OverflowError` if there is none."""
+    """Return the middle of a ball; an `OverflowError` for an unbounded ball."""
     return fraction_of(_finite(x).mid())
 
 
@@ -187,7 +189,9 @@ def _first_blocks(diagonal: arb_mat, upper: arb_mat, order: int) -> list[arb_mat
     ]
 
 
-def _filled(M: MultiAffine, values: Mapping[str, Any], symbol: str, height: int, width: int = 0) -> arb_mat:
+def _filled(
+    M: MultiAffine, values: Mapping[str, Any], symbol: str, height: int, width: int = 0
+) -> arb_mat:
     """Return a matrix of balls, or its derivative by a number, with zeros below."""
     from flint import arb, arb_mat
 

@@ -27,11 +27,11 @@ from nrs_design.loop.hull import (
     Key,
     Point,
     Tie,
-    around,
+    enclose_box,
     fraction,
     nodes,
     rational,
-    rounded,
+    round_balls,
     simplex,
     ties,
 )
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
 ONE, ZERO = Fraction(1), Fraction(0)
 BITS = 240
-# Names of the load of a period, beside those of the force sample.
-AGAIN = ("k held", "b held")
+# Labels of the load within a period; `LOAD` labels the load at the force sample.
+HELD_LOAD = ("k held", "b held")
 NOTHING = Interval.point(ZERO)
 
 
@@ -81,8 +81,8 @@ class HeldDrive:
     ) -> tuple[FlowPoint, ...]:
         """Return the points that enclose the motion of the drive in a period.
 
-        `touched` are stiffness and damping by the symbols of `LOAD`, by default zero; they act on a
-        loaded drive, and labels name them as `load`. A point alone need not be a drive of the
+        `contact` holds stiffness and damping by the symbols of `LOAD`, by default zero. They act on
+        a loaded drive, and labels name them as `load`. A point alone need not be a drive of the
         ranges. An `AssemblyError` if a period is too long to enclose an entry.
         """
         with precision(BITS):
@@ -98,7 +98,7 @@ class _Number:
 
     symbol: str  # Empty for a time
     name: str  # Its name in labels
-    # Its ends, in the coordinate in which rates are affine: the number, or one over it.
+    # Ends in the coordinate in which rates are affine: the number or its inverse.
     low: arb
     high: arb
     span: int | None = None  # Index of a time among those left of the period
@@ -115,7 +115,7 @@ class _Flow:
         load: tuple[str, str],
     ) -> None:
         self.drive, self.entries = drive, Entries(drive)
-        self.spans = [timing.steps, *(timing.left(age) for age in timing.within)]
+        self.spans = [timing.steps, *(timing.time_left(age) for age in timing.new_ages)]
         ranges = {s: contact.get(s, NOTHING) for s in LOAD} if drive.loaded else {}
         ranges |= {s: i for s, i in drive.ranges.items() if s != GAIN}
         names = dict(zip(LOAD, load, strict=True))
@@ -133,14 +133,14 @@ class _Flow:
         ]
         tissue = (*LOAD, *MEMORY)
         self.changing = [n for n in self.numbers if n.symbol in tissue and ranges[n.symbol].varies]
-        times = ["T", *(f"h{age}" for age in timing.within)]
+        times = ["T", *(f"h{age}" for age in timing.new_ages)]
         for s, (time, i) in enumerate(zip(times, self.spans, strict=True)):
             if i.low != i.high:
                 self.numbers.append(_Number("", time, ball_around(i.low), ball_around(i.high), s))
-        # Where a command takes effect in the period or later, a velocity has jumped or has not.
+        # A command may take effect in this period or later, so the velocity may or may not jump.
         self.jumps = {
             s: str(age)
-            for s, age in enumerate(timing.within, 1)
+            for s, age in enumerate(timing.new_ages, 1)
             if drive.speed is not None and self.spans[s].low == 0
         }
         self.entries.check_length(self.whole, self.spans[0].high)
@@ -181,7 +181,7 @@ class _Flow:
         return found
 
     def _keys(self) -> list[Key]:
-        """Return the entries that are not zero; of later commands those of the command alone."""
+        """Return the keys of nonzero entries; later commands have only the column of the command."""
         # The position of a robot that takes positions acts as minus its command, but on a memory.
         n, acts = self.drive.order, self.entries.acting(self.whole)
         memories = {n - 2} if self.drive.memory else set()
@@ -215,7 +215,7 @@ class _Flow:
         for s, span in enumerate(self.spans):
             keys = [key for key in self.keys if key[0] == s]
             if keys and span.low == span.high:
-                M = self.entries.at(self.low, ball_around(span.low))
+                M = self.entries.evaluate(self.low, ball_around(span.low))
                 sizes = {(s, i, j): highest(abs(M[i, j])) for _, i, j in keys}
                 found |= ties(G, span.low, entry, sizes)
         return found
@@ -228,7 +228,9 @@ class _Flow:
         for labels, curve, point in self._hull():
             for jumped, entries in self._jumped(labels, self._completed(point)):
                 for ends, values in labelled_ends(gain):
-                    yield FlowPoint((*labels, *ends, *jumped), curve, self._rows(entries, values[GAIN]))
+                    yield FlowPoint(
+                        (*labels, *ends, *jumped), curve, self._rows(entries, values[GAIN])
+                    )
 
     def _hull(self) -> Iterator[tuple[tuple[str, ...], tuple[str, int] | None, Point]]:
         """Yield points of entries: around the curve of the only range, or at the ends of ranges."""
@@ -250,14 +252,14 @@ class _Flow:
         found: dict[Key, EntryCurve] = {}
         for s, span in enumerate(self.spans):
             if number is None or number.span not in (None, s):
-                values, far = [self._at({}, s)] * (order + 1), None
+                values, far = [self._evaluate({}, s)] * (order + 1), None
             else:
                 width = number.high - number.low
                 places = [number.low + share * width for share in nodes(order)]
-                values = [self._at({number.name: x}, s) for x in places]
+                values = [self._evaluate({number.name: x}, s) for x in places]
                 anywhere = _ball_over(span.low, span.high)
                 far = self.entries.jet(self.whole, anywhere, number.symbol, width, order + 1)[-1]
-            for key in self._own(s):
+            for key in self._free_keys(s):
                 _, i, j = key
                 found[key] = EntryCurve([M[i, j] for M in values], 0 if far is None else far[i, j])
         return found
@@ -271,16 +273,16 @@ class _Flow:
         ]
         points: list[Point] = [{} for _ in corners]
         for s in range(len(self.spans)):
-            for key, values, off in self._between(s, corners):
+            for key, values, off in self._interpolate_time(s, corners):
                 errors[key] = off
                 for point, value in zip(points, values, strict=True):
                     point[key] = value
         for corner, middle in zip(corners, points, strict=True):
             labels = tuple(f"{name}-{('min', 'max')[end]}" for name, end in corner.items())
-            for k, point in enumerate(around(middle, errors)):
+            for k, point in enumerate(enclose_box(middle, errors)):
                 yield (*labels, f"flow-{k}"), None, point
 
-    def _between(
+    def _interpolate_time(
         self, s: int, corners: Sequence[Mapping[str, int]]
     ) -> Iterator[tuple[Key, list[Fraction], Fraction]]:
         """Yield the entries over one time at the ends of all numbers, and their largest error.
@@ -295,35 +297,39 @@ class _Flow:
         ]
         if self.changing:
             widths = {n.symbol: n.high - n.low for n in self.changing}
-            change = self.entries.moved(self.whole, ball_around(span.high), widths)
+            change = self.entries.bound_change(self.whole, ball_around(span.high), widths)
         places = [tuple(corner[n.name] for n in mine) for corner in corners]
         matrices = {
-            ends: self._at({n.name: (n.low, n.high)[e] for n, e in zip(mine, ends, strict=True)}, s)
+            ends: self._evaluate(
+                {n.name: (n.low, n.high)[e] for n, e in zip(mine, ends, strict=True)}, s
+            )
             for ends in dict.fromkeys(places)
         }
-        for key in self._own(s):
+        for key in self._free_keys(s):
             _, i, j = key
             sag = sum((max(highest(B[i, j]), ZERO) for B in bends), ZERO) / 4
             rise = sum((max(-lowest(B[i, j]), ZERO) for B in bends), ZERO) / 4
             off = (sag + rise) / 2 + (ZERO if change is None else highest(change[i, j]))
             shift = ball_around((rise - sag) / 2)
-            found, error = rounded((M[i, j] + shift for M in matrices.values()), off)
+            found, error = round_balls((M[i, j] + shift for M in matrices.values()), off)
             values = dict(zip(matrices, found, strict=True))
             yield key, [values[ends] for ends in places], error
 
-    def _own(self, s: int) -> Iterator[Key]:
+    def _free_keys(self, s: int) -> Iterator[Key]:
         """Yield the entries over one time that no others give."""
         return (key for key in self.keys if key[0] == s and key not in self.ties)
 
-    def _at(self, values: Mapping[str, arb], s: int) -> arb_mat:
+    def _evaluate(self, values: Mapping[str, arb], s: int) -> arb_mat:
         """Return the entries over one time where numbers are, by their names."""
         point = {n.symbol: values[n.name] for n in self.numbers if n.symbol and n.name in values}
         h = next((values[n.name] for n in self.numbers if n.span == s and n.name in values), None)
-        return self.entries.at(self.low | point, ball_around(self.spans[s].low) if h is None else h)
+        return self.entries.evaluate(
+            self.low | point, ball_around(self.spans[s].low) if h is None else h
+        )
 
     def _completed(self, point: Point) -> Point:
         """Return a point with the entries that others give."""
-        whole = point | {key: tie.at(point) for key, tie in self.ties.items()}
+        whole = point | {key: tie.evaluate(point) for key, tie in self.ties.items()}
         if self.lasting is not None:
             n, T, (v, speed) = self.drive.order, self.spans[0].low, self.lasting
             for i in range(n):

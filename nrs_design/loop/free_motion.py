@@ -1,4 +1,4 @@
-"""Contact loss: its place, and the forces and flights that show it."""
+"""Contact loss: where contact may be lost, tensile forces, and flights."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Loss(Enum):
     NEVER = "contact-kept.never"
     NOT_MODELLED = "contact-kept.not-modelled"
     # Each law states its own assumption.
-    BY_LAWS = "contact-kept.law"
+    LAW_SPECIFIC = "contact-kept.law"
     # At the surface; each statement says whether it covers the loss.
     SURFACE = "contact-lost.surface"
     ANYWHERE = "contact-lost.anywhere"
@@ -32,11 +32,11 @@ class Loss(Enum):
 
     @property
     def anywhere(self) -> bool:
-        """Whether contact is lost at any deflection, so that free motion is one of the modes."""
+        """Tell whether contact may be lost at any deflection: free motion is then a mode."""
         return self in (Loss.ANYWHERE, Loss.UNDER_FORCE_CONTROL)
 
     @classmethod
-    def of(
+    def classify(
         cls,
         contact: str | None,
         environments: Iterable[Environment],
@@ -51,7 +51,7 @@ class Loss(Enum):
         """
         if any(c.law.commands == "position" for c in design.controllers):
             # Force control has the same equilibrium in free motion: the commanded position.
-            return cls.UNDER_FORCE_CONTROL if contact == "losable" else cls.BY_LAWS
+            return cls.UNDER_FORCE_CONTROL if contact == "losable" else cls.LAW_SPECIFIC
         sprung = {c.law.spring != 0 for c in design.controllers}
         if contact == "kept" or ((slowed or True in sprung) and contact is None):
             return cls.NEVER
@@ -79,8 +79,8 @@ def flights_of(
     """Return the contact modes, the free modes and the tensile forces."""
     known = {environment.name for environment in environments}
     return Flights(
-        tuple(item.name for item in items if item.touches in known),
-        tuple(item.name for item in items if item.touches == FREE),
+        tuple(item.name for item in items if item.medium in known),
+        tuple(item.name for item in items if item.medium == FREE),
         tensions,
     )
 

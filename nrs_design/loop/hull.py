@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flint import arb, fmpq, fmpq_mat
 
 ONE, ZERO = Fraction(1), Fraction(0)
-# Bits of a known number, so that its ends are one double, and of a range, relative to its error.
+# Bits of a known number (both ends round to one double), and of a range relative to its error.
 KNOWN_BITS, RANGED_BITS = 64, 3
 # Bits of points on a curve, relative to its size: the fewest that suffice, to make proofs fast.
 CURVE_BITS = range(20, 400, 12)
@@ -25,7 +25,7 @@ NARROW, WIDEST = Fraction(1, 2**12), Fraction(1, 4)
 SHARE = Fraction(1, 2**20)
 # Largest amplification of relative errors by a tie.
 LOOSE = 2**7
-# More curves than this are given up: few of them bend on their own, and all are nearly flat.
+# Largest number of curves: with more, the curves together are nearly flat.
 MOST_BENT = 16
 
 # A number by how long is left (an index), row and column.
@@ -41,7 +41,7 @@ class EntryCurve:
     far: Any  # A ball of Taylor's coefficient of the next order, anywhere
 
 
-def around(point: Mapping[Key, Fraction], errors: Mapping[Key, Fraction]) -> list[Point]:
+def enclose_box(point: Mapping[Key, Fraction], errors: Mapping[Key, Fraction]) -> list[Point]:
     """Return the points of a simplex that holds a box of errors.
 
     Of n uncertain numbers: all at their low ends, and each alone n times as far as its high end.
@@ -51,7 +51,7 @@ def around(point: Mapping[Key, Fraction], errors: Mapping[Key, Fraction]) -> lis
     return [low, *(low | {key: low[key] + 2 * len(wide) * errors[key]} for key in wide)]
 
 
-def rounded(balls: Iterable[arb], off: Fraction = ZERO) -> tuple[list[Fraction], Fraction]:
+def round_balls(balls: Iterable[arb], off: Fraction = ZERO) -> tuple[list[Fraction], Fraction]:
     """Return rational numbers near balls, and how far off they and an error are at most."""
     balls = list(balls)
     size = max(highest(abs(value)) for value in balls) or off or ONE
@@ -76,9 +76,9 @@ def simplex(curves_of: Callable[[int], Mapping[Key, EntryCurve]]) -> list[Point]
     curves, still, errors = curves_of(len(bent)), {}, {}
     for key, curve in curves.items():
         if key not in bent:
-            (still[key],), errors[key] = rounded(curve.values[:1])
+            (still[key],), errors[key] = round_balls(curve.values[:1])
     if not bent:
-        return around(still, errors)
+        return enclose_box(still, errors)
     rests = {key: 2 * highest(abs(curves[key].far)) / 4 ** (len(bent) + 1) for key in bent}
     control = {key: _control_points(curves[key].values) for key in bent}
     for bits in CURVE_BITS:
@@ -164,7 +164,7 @@ class Tie:
     constant: Fraction
     weights: Mapping[Key, Fraction]
 
-    def at(self, point: Mapping[Key, Fraction]) -> Fraction:
+    def evaluate(self, point: Mapping[Key, Fraction]) -> Fraction:
         """Return the number where the others are."""
         return self.constant + sum((w * point[key] for key, w in self.weights.items()), ZERO)
 
@@ -181,7 +181,7 @@ def ties(
     """
     from flint import fmpq, fmpq_mat
 
-    # Small entries give large ones with more digits than the other way round.
+    # Small entries give large entries with smaller relative errors than the reverse.
     m, keys = G.nrows(), sorted(sizes, key=lambda key: sizes[key])
     powers = [fmpq_mat([[fmpq(int(i == j)) for j in range(m)] for i in range(m)])]
     for _ in range(2 * m - 1):

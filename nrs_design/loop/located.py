@@ -26,7 +26,7 @@ MAX_CORNERS = 50_000
 class ConstantParameter:
     """One parameter that does not change while the robot runs."""
 
-    said: FixedParameter  # Its name and range
+    fixed: FixedParameter  # Its name and range
     # Labels of the low and the high end in names of modes, such as ``k-min``.
     labels: tuple[str, str]
     contact: str | None = None  # Contact with this parameter; None if it occurs in all modes
@@ -41,7 +41,7 @@ class Label(NamedTuple):
     """End of a range, as the name of a mode says it."""
 
     text: str
-    attained: bool  # Whether a loop of the spec is at that end, rather than near it
+    attained: bool  # Whether the end is a value of the spec, not of an enclosure
     constant: bool  # Whether the number does not change
 
 
@@ -54,7 +54,7 @@ class Spot:
     corner: tuple[tuple[str, int], ...] = ()
 
     @classmethod
-    def named(cls, *names: str) -> Spot:
+    def from_names(cls, *names: str) -> Spot:
         """Return a place with these names, whatever the ranges are."""
         return cls(tuple(Label(name, attained=True, constant=False) for name in names))
 
@@ -86,11 +86,11 @@ def spot_of(
     corner, fixed = [], set()
     for constant in constants:
         if curve is not None and curve[0] == constant.symbol:
-            corner.append((constant.said.name, curve[1]))
+            corner.append((constant.fixed.name, curve[1]))
             fixed.add(f"flow-{curve[1]}")
         for end, text in enumerate(constant.labels):
             if text in texts:
-                corner.append((constant.said.name, end))
+                corner.append((constant.fixed.name, end))
                 fixed.add(text)
     labels = (Label(t, t.rpartition("-")[0] in attained, t in fixed) for t in texts)
     return Spot(tuple(labels), tuple(corner))
@@ -112,9 +112,9 @@ class LocatedMode:
     group: str  # The name that rules of switching know: a controller, or what is done instead
     spot: Spot
     # Environment of the force (sample), or free motion; empty if it is the same in all contacts
-    touches: str
+    medium: str
     period: Period
-    begins: bool = False  # Whether a round begins with this mode
+    starts_round: bool = False  # Whether a round begins with this mode
 
     @property
     def name(self) -> str:
@@ -227,7 +227,7 @@ def corner_counts(
 ) -> list[int]:
     """Return the number of corners of each constant parameter: two, or more around a curve."""
     ends = [dict(mode.spot.corner) for mode in modes]
-    return [1 + max(1, *(corner.get(p.said.name, 0) for corner in ends)) for p in parameters]
+    return [1 + max(1, *(corner.get(p.fixed.name, 0) for corner in ends)) for p in parameters]
 
 
 def constant_sets(
@@ -244,19 +244,21 @@ def constant_sets(
     first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
     for mode in modes:
         corner = dict(mode.spot.corner)
-        ends = tuple(corner.get(parameter.said.name) for parameter in parameters)
+        ends = tuple(corner.get(parameter.fixed.name) for parameter in parameters)
         known[mode.varying, ends] = mode.name
         first[mode.varying, tuple(end is not None for end in ends)] = None
     counts = corner_counts(modes, parameters)
     for varying, has in first:
         corners = product(*map(range, counts))
-        keys = [tuple(c if h else None for c, h in zip(place, has, strict=True)) for place in corners]
+        keys = [
+            tuple(c if h else None for c, h in zip(place, has, strict=True)) for place in corners
+        ]
         if any((varying, key) not in known for key in keys):
             raise InternalError(f"a corner of {varying[0]} has no mode")
         yield tuple(known[varying, key] for key in keys)
 
 
-def with_constants(
+def add_constants(
     system: SwitchedSystem, parameters: Sequence[ConstantParameter], modes: Sequence[LocatedMode]
 ) -> SwitchedSystem:
     """Return the system, with a mode for each corner, with parameters that do not change."""
@@ -270,7 +272,7 @@ def with_constants(
             remedy="leave out `varies: false` for some of the ranges",
         )
     sets = tuple(constant_sets(modes, parameters))
-    fixed = tuple(parameter.said for parameter in parameters)
+    fixed = tuple(parameter.fixed for parameter in parameters)
     return replace(
         system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=fixed)
     )

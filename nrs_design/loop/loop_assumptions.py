@@ -29,7 +29,7 @@ from nrs_design.spec.units import THESIS_COMMAND
 UNCOUPLED = assume("uncoupled.axes")
 
 
-# Assumption about sample times, by one period for all, and by samples that are steady.
+# Assumption about sample times. Keys: single period, and no jitter.
 _PERIODS = {
     (True, True): "period.single",
     (True, False): "period.jitter",
@@ -44,7 +44,7 @@ def assume_loop(
     """Yield the assumptions about an interaction design.
 
     `losable`: the system says how contact is lost, and a statement whether it is kept; `free`: free
-    motion is one of the modes; `limited`: some statement is about signals that saturate.
+    motion is one of the modes; `has_saturation`: some statement is about signals that saturate.
     """
     design = loop.design
     yield from _assume_motion(loop)
@@ -85,7 +85,7 @@ def _assume_motion(loop: SharedState) -> Iterator[Assumption]:
     """Yield the model of the motion loop and of its load."""
     joint, axis = loop.joint, loop.design.axis
     if joint is None:
-        yield assume(f"nominal-motor.{'given' if loop.given else 'designed'}")
+        yield assume(f"nominal-motor.{'given' if loop.is_stated else 'designed'}")
         return
     motor = "nominal-motor.joint" if joint.ranges.fixed else "motor.joint"
     yield assume(motor, **joint.ranges.assumed(axis))
@@ -191,7 +191,7 @@ def assume_sampled_loop(
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
-    by_position = loss in (Loss.BY_LAWS, Loss.UNDER_FORCE_CONTROL)
+    by_position = loss in (Loss.LAW_SPECIFIC, Loss.UNDER_FORCE_CONTROL)
     yield assume(
         "inputs.sampled",
         beyond=extra,
@@ -209,8 +209,8 @@ def assume_sampled_loop(
     yield _assume_tissue(environments, axis)
     for e in environments:
         yield from e.law.assumptions(e.name, is_only=len(environments) == 1)
-    # For contact loss at the surface, each statement says whether it covers it.
-    if loss is Loss.BY_LAWS:
+    # Statements say themselves whether they cover contact loss at the surface.
+    if loss is Loss.LAW_SPECIFIC:
         yield from _assume_kept_contact(design, uniform=program.idle is None)
     elif loss is not Loss.SURFACE:
         yield assume(loss.value)
@@ -237,7 +237,7 @@ def _assume_motor(
     drive = plant.drive
     numbers = (ranges.gain, ranges.time_constant) if drive is None else drive.ranges.values()
     # Parameters change at samples only.
-    moves = f"{how}-sampled" if (kind := moving(numbers)) else ""
+    moves = f"{kind}-sampled" if (kind := moving(numbers)) else ""
     motor = ranges.assumed(axis) | {"moving": moves}
     if drive is not None and drive.interface is CommandInterface.TORQUE:
         J = f"{drive.ranges['J'].text} {axis.unit('kg*m^2')}"
@@ -301,7 +301,7 @@ def _assume_arithmetic(
     design: ControllerDesign,
 ) -> Iterator[Assumption]:
     """Yield the coefficients of the program, and its roundings."""
-    step, known = program.step, program.listed.law.coefficient
+    step, known = program.step, program.operation_list.law.coefficient
     gains = {} if step.interface else {"Kp": step.Kp, "Kd/T": step.D}
     gains |= {
         f"{symbol} of {name}": number
@@ -354,7 +354,7 @@ def _assume_tissue(
 def _assume_kept_contact(design: ControllerDesign, *, uniform: bool) -> Iterator[Assumption]:
     """Yield the assumption of each control law about contact.
 
-    `alone`: all controllers give the motion loop the same kind of command.
+    `uniform`: all controllers give the motion loop the same kind of command.
     """
     names = {controller.law.name for controller in design.controllers}
     laws = [law for name, law in LAWS.items() if name in names]

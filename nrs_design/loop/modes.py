@@ -64,7 +64,7 @@ def velocity_mode(
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
     ``xp' = Ap xp + Bp u``, ``v = Cp xp``, the contact from v to F, and the law from F to u. States
-    of the low-pass stand between those of law and contact. `cut` is how much of the force acts.
+    of the low-pass stand between those of law and contact. Only `share` of the force acts.
     """
     law_end = motion.order + len(law.states)
     touch = law_end + (0 if low_pass is None else low_pass.order)
@@ -107,7 +107,7 @@ def _acceleration(
     return combine(*zip(motion.output(len(state))[: motion.order], rates, strict=True))
 
 
-def with_last(rows: Rows, form: LinearForm) -> Rows:
+def replace_last(rows: Rows, form: LinearForm) -> Rows:
     """Return a mode with a form of the state in the place of the last one (``T A T^-1``)."""
     T, inverse = coordinates(len(rows)), coordinates(len(rows))
     T[-1] = list(form)
@@ -115,7 +115,7 @@ def with_last(rows: Rows, form: LinearForm) -> Rows:
     return [*multiply(multiply(T, rows), inverse)]
 
 
-def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
+def add_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
     """Return a mode among states that it leaves alone: by place, these decay at rates in 1/s."""
     size = len(rows) + len(rates)
     full = [zero(size) for _ in range(size)]

@@ -20,7 +20,7 @@ from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 
 Rows = Sequence[Sequence[Fraction]]
-RowsAt = Callable[[Mapping[str, Fraction]], Rows]
+RowsFunction = Callable[[Mapping[str, Fraction]], Rows]
 
 # Between the ends of a range, which are labelled as `Interval.ends` does.
 MIDDLE = "middle"
@@ -31,17 +31,17 @@ class Box:
     """Where the parameters of a matrix lie."""
 
     ranges: Mapping[str, Interval]  # By symbols such as ``k`` or ``Mt``; a point adds no corners
-    # Parameters in one over which matrices are affine; they are positive. One over such a parameter
-    # runs through the interval between the inverse ends, so the corners are the same.
+    # Positive parameters p with matrices that are affine in 1/p. The ends of 1/p are the inverse
+    # ends of p, so the corners are the same.
     inverse: frozenset[str] = frozenset()
 
-    def beside(self, box: Box) -> Box:
+    def join(self, box: Box) -> Box:
         """Return the box of the parameters of both, which have no symbol in common."""
         if common := self.ranges.keys() & box.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
         return Box({**self.ranges, **box.ranges}, self.inverse | box.inverse)
 
-    def corners(self, evaluate: RowsAt, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
+    def corners(self, evaluate: RowsFunction, name: str) -> Iterator[tuple[tuple[str, ...], Rows]]:
         """Yield the labels and matrices of the corners, the last parameter turning fastest.
 
         An `InternalError` if the matrix of that mode is not affine along each axis. That follows
@@ -52,7 +52,7 @@ class Box:
         mean of those at the corners around it.
         """
         known: dict[tuple[str, ...], Rows] = {}
-        # Neighbors are in the middle on one axis less, so they come first.
+        # Neighbors have fewer middles, so the order of middles computes neighbors first.
         for place, values in sorted(self._grid(), key=lambda item: item[0].count(MIDDLE)):
             known[place] = evaluate(values)
             if MIDDLE not in place:
@@ -91,7 +91,7 @@ class Joint:
     load_inertia: Fraction | None  # The J of `nrs_design.models.motion_loop.JointMotionLoop`
 
     @classmethod
-    def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
+    def from_plant(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
         """Return the joint of a plant, or None where its motor is a point and carries no load."""
         ranges = plant.actuator_ranges
         if ranges.fixed and plant.load_inertia is None:
@@ -107,9 +107,9 @@ class Joint:
     def nominal(self) -> JointMotionLoop:
         """The loop that the design uses."""
         motor = self.ranges.nominal
-        return self.at({"Km": motor.gain, "tau": motor.time_constant})
+        return self.evaluate({"Km": motor.gain, "tau": motor.time_constant})
 
-    def at(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
+    def evaluate(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
         """Return the loop at the values of ``Km`` and ``tau``."""
         gains = self.motion.Kp, self.motion.Kd
         return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)

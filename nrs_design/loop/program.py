@@ -32,10 +32,10 @@ from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordi
 
 # Inputs that are not zero in the loop of a proof.
 SENSED = frozenset({"angle", "torque", "velocity_command"})
-# Any number that is neither zero nor one: a product with one of these is exact.
+# A number that is neither zero nor one: products with zero or one need no rounding.
 ANY = Fraction(1, 2)
 # Terms of the list.
-ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
+ERROR, KP, KD, DECAY, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
 IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
 # Terms with a rounded operand; `RoundedStep` bounds their second-order errors.
 SECOND_ORDER = frozenset({KP, KD, STEP})
@@ -62,9 +62,9 @@ class ListedLaw:
 
     # With any numbers; its modes are the types.
     law: StepLaw
-    # For each mode and result, the names of its terms by those of the list.
+    # For each mode and result: names of the terms in the list, and their unique names.
     names: Mapping[str, Mapping[str, Mapping[str, str]]]
-    # For each mode and result, how often each of its terms is rounded, by name.
+    # For each mode and result: number of roundings of each term, by unique name.
     counts: Mapping[str, Mapping[str, Mapping[str, int]]]
 
     @property
@@ -110,8 +110,8 @@ class ListedLaw:
 def list_law(order: int, kinds: Kinds, interface: CommandInterface | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
-    `order` is that of the filter of the force, `takes` the command of a robot without a motor of
-    ours. An `InternalError` if a term takes a rounded number, and the addition has no bound.
+    `order` is the order of the force filter; `interface` is the command of a robot that controls
+    its own motor. An `InternalError` if a term takes a rounded number, and the addition has no bound.
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
@@ -132,7 +132,7 @@ def list_law(order: int, kinds: Kinds, interface: CommandInterface | None = None
         for result, terms in counted_terms(law, i, inputs).items():
             if result in left_out:
                 continue
-            # Each result has its own roundings, so their names differ.
+            # Roundings of different results are independent, so names are unique.
             names[result] = {t: f"{t} kept" if t in term_names else t for t in terms}
             tally[result] = {names[result][term]: count for term, count in terms.items()}
             term_names |= {*tally[result]}
@@ -175,7 +175,7 @@ class RoundedStep:
     law: StepLaw  # The list of operations
     numbers: Mapping[str, Fraction]  # Its coefficients by name
     # Rounding error of each term: the last coordinates of all forms.
-    rounded: Mapping[str, LinearForm]
+    roundings: Mapping[str, LinearForm]
     shares: Mapping[str, Fraction]  # Bounds on these errors, relative to the terms
     terms: Mapping[str, tuple[Term, ...]]  # Terms of each result
     off: Mapping[str, LinearForm]  # Rounding error of each result
@@ -187,7 +187,7 @@ class RoundedStep:
     def command(self) -> LinearForm:
         """Return the command with its rounding errors, those of second order apart."""
         names = (second(term.name) for term in self.terms.get("error", ()))
-        off = (self.rounded[name] for name in names if name in self.rounded)
+        off = (self.roundings[name] for name in names if name in self.roundings)
         return _sum(self.result(self.law.outputs["command"]), off)
 
     def motion_sizes(self) -> dict[str, LinearForm]:
@@ -196,8 +196,8 @@ class RoundedStep:
         summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
         read = combine(*((ONE, form) for form in summands.values()))
         parts = {term.name: self._exact(term.form) for term in self.terms[self._command]}
-        # Of a sum of two sizes, the part that is of second order counts with another term.
-        # Without damping, the command has one term.
+        # The second-order part of a sum of two sizes counts with another term. Without damping,
+        # the command has one term.
         off = shares.get(KD, Fraction(0))
         share = shares[KP] * Kp * (1 + shares[ERROR]) + off * D * shares[ERROR]
         sizes: dict[str, LinearForm] = {
@@ -206,7 +206,7 @@ class RoundedStep:
         }
         for name, form in parts.items():
             if name == KD:
-                sizes[KD] = _shortened(shares[KD], D, form)
+                sizes[KD] = _shorten(shares[KD], D, form)
             elif name != KP and name in shares:
                 sizes[name] = combine((shares[name], form))
         for name in summands.keys() & shares.keys() - {ERROR}:
@@ -214,10 +214,10 @@ class RoundedStep:
             sizes[second(name)] = combine((shares[second(name)] * (Kp + D), summands[name]))
         return sizes
 
-    def other_sizes(self) -> dict[str, LinearForm]:
+    def result_sizes(self) -> dict[str, LinearForm]:
         """Return bounds on the roundings of all other results."""
         sizes: dict[str, LinearForm] = {}
-        factors = {STEP: "T", KEPT: "a"}
+        factors = {STEP: "T", DECAY: "a"}
         separate = {*own_results(self.law)}
         for result in self.terms.keys() - {"error", self._command}:
             growth = 1 + self.shares[STEP] if result in separate else ONE
@@ -227,9 +227,9 @@ class RoundedStep:
                 form = self._exact(term.form)
                 if term.name in factors:
                     factor = self.numbers[factors[term.name]]
-                    sizes[term.name] = _shortened(share, factor, form)
+                    sizes[term.name] = _shorten(share, factor, form)
                 else:
-                    # Of a sum of two sizes, the part of second order counts with another term.
+                    # The second-order part of a sum of two sizes counts with another term.
                     sizes[term.name] = combine((share * growth, form))
         return sizes
 
@@ -241,18 +241,18 @@ class RoundedStep:
 
     def _exact(self, form: LinearForm) -> LinearForm:
         """Return what a form is without roundings."""
-        end = len(form) - len(self.rounded)
+        end = len(form) - len(self.roundings)
         return [*form[:end], *(Fraction(0) for _ in form[end:])]
 
 
-def _shortened(share: Fraction, factor: Fraction, form: LinearForm) -> LinearForm:
+def _shorten(share: Fraction, factor: Fraction, form: LinearForm) -> LinearForm:
     """Return a share of what is a factor times another form, in short numbers."""
     return combine((short(share * factor) / factor if factor else ONE, form))
 
 
 # States of a list of operations: the error of motion of a sample ago, and the reference of
 # impedance controllers alone, of which the error of motion is kept.
-BEFORE, REFERENCE = "error_before", "reference"
+LAST_ERROR, REFERENCE = "error_before", "reference"
 # Inputs of a loop, in this order; the last one is the part of a command that a driver cuts off.
 INPUTS = (
     "velocity command",
@@ -272,19 +272,19 @@ class SampledProgram:
 
     step: StepFrame  # Motion controller and filter of the force
     laws: tuple[DiscreteLaw, ...]  # Laws of all controllers, with the exported coefficients
-    # Factor of idle states per period; None if all laws are of one kind.
+    # Decay factor of idle states per period; None if all laws have one kind of command.
     idle: Fraction | None = None
 
     @cached_property
-    def listed(self) -> ListedLaw:
+    def operation_list(self) -> ListedLaw:
         """The list of operations."""
         return list_law(self.step.order, kinds_of(self.laws), self.step.interface)
 
     @cached_property
     def counts(self) -> dict[str, int]:
         """Number of roundings of each term, in the order of certificates."""
-        counts = self.listed.all_counts
-        first = (ERROR, KP, KD, KEPT)
+        counts = self.operation_list.all_counts
+        first = (ERROR, KP, KD, DECAY)
         last = (STEP, IDLE_REFERENCE, IDLE_VELOCITY, *self._placing)
         others = [name for name in counts if name not in (*first, *last)]
         return {name: counts[name] for name in (*first, *others, *last) if name in counts}
@@ -298,20 +298,22 @@ class SampledProgram:
     @property
     def _placing(self) -> tuple[str, ...]:
         """The terms of a reference that is computed within a sample."""
-        errors = (results.get("error", {}) for results in self.listed.counts.values())
+        errors = (results.get("error", {}) for results in self.operation_list.counts.values())
         return tuple(dict.fromkeys(name for terms in errors for name in terms if name != ERROR))
 
     @cached_property
     def stored(self) -> dict[str, str]:
         """The states of the list by name: as modes call them."""
-        return {value.name: value.stored for value in self.listed.law.states if value.stored}
+        return {
+            value.name: value.stored for value in self.operation_list.law.states if value.stored
+        }
 
     @cached_property
     def places(self) -> tuple[str, ...]:
         """The states that are a reference: those before the error of motion."""
-        if BEFORE not in self.stored:
+        if LAST_ERROR not in self.stored:
             return tuple(name for name in self.stored if name == REFERENCE)
-        return tuple(takewhile(lambda name: name != BEFORE, self.stored))
+        return tuple(takewhile(lambda name: name != LAST_ERROR, self.stored))
 
     @property
     def lags(self) -> tuple[str, ...]:
@@ -335,11 +337,11 @@ class SampledProgram:
         parts = step_parts(self.laws)
         numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
         roundings = {name: w[name] for name in self.roundings}
-        step = self.listed.step(law, numbers, inputs, roundings, self.roundings)
+        step = self.operation_list.step(law, numbers, inputs, roundings, self.roundings)
         sizes: dict[str, LinearForm] = {}
         moving = law.law.commands == "velocity"
-        for name, result in self.listed.following.items():
-            if turn is (Turn.ADMITTANCE if name == BEFORE else Turn.MOTION):
+        for name, result in self.operation_list.following.items():
+            if turn is (Turn.ADMITTANCE if name == LAST_ERROR else Turn.MOTION):
                 continue
             share = ONE if moving and name in self.places else ZERO
             w.set({f"{name}+": w.sum((ONE, step.result(result)), (share, w[ROUNDED_REFERENCE]))})
@@ -347,4 +349,4 @@ class SampledProgram:
             streamed = ONE if self.step.interface is CommandInterface.POSITION else ZERO
             w.set({"command": w.sum((ONE, step.command()), (streamed, w[ROUNDED_REFERENCE]))})
             sizes |= {} if self.step.streams else step.motion_sizes()
-        return sizes if turn is Turn.MOTION else sizes | step.other_sizes()
+        return sizes if turn is Turn.MOTION else sizes | step.result_sizes()

@@ -16,12 +16,12 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Calendar, Turn
 from nrs_design.loop.located import Period
 from nrs_design.loop.program import (
-    BEFORE,
     CUT_OFF,
     ENCODER,
     FORCE_ERROR,
     FRICTION,
     INPUTS,
+    LAST_ERROR,
     REFERENCE,
     ROUNDED_ANGLE,
     SampledProgram,
@@ -30,9 +30,9 @@ from nrs_design.loop.wires import Wires
 from nrs_design.models.drive import OMEGA, CommandInterface, Drive
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
-DELTA, HELD = "delta [rad]", "u held"
-# Rows of each state of a drive, and of the motion of its joint: over these states, the deflection,
-# the command in force when a period begins, and its changes within the period.
+DELTA, HELD_COMMAND = "delta [rad]", "u held"
+# Rows of the states of a drive and of the joint motion. Columns: the states, the deflection, the
+# command in force at the begin of a period, and the changes of the command within the period.
 Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]
@@ -44,16 +44,16 @@ class Sample:
     """Result of a sample, before the flow of the period."""
 
     wires: Wires
-    after: Mapping[str, LinearForm]  # States that are known then
+    states: Mapping[str, LinearForm]  # States that are known then
     # Issued commands, the newest first; the last is in force when the period begins.
-    sent: Sequence[LinearForm]
+    commands: Sequence[LinearForm]
     sizes: tuple[LinearForm, ...]
     command: LinearForm
 
     def does(self, sample: Sample) -> bool:
         """Tell whether another sample does the same."""
-        mine = self.after, self.sent, self.sizes
-        return mine == (sample.after, sample.sent, sample.sizes)
+        mine = self.states, self.commands, self.sizes
+        return mine == (sample.states, sample.commands, sample.sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,21 +69,21 @@ class SampledLoop:
         """Names and units of the states."""
         stored, calendar = self.program.stored, self.calendar
         place = [stored[name] for name in self.program.places]
-        before = [stored[BEFORE]] if BEFORE in stored else []
-        hold = [HELD] if calendar.holds else []
+        before = [stored[LAST_ERROR]] if LAST_ERROR in stored else []
+        hold = [HELD_COMMAND] if calendar.holds else []
         others = [text for text in stored.values() if text not in (*place, *before)]
-        leading = (*self.drive.states, *before, *hold, *calendar.sent)
+        leading = (*self.drive.states, *before, *hold, *calendar.pending)
         return (*place, *leading, *others, *calendar.samples, DELTA)
 
     @cached_property
-    def from_deflection(self) -> frozenset[str]:
+    def relative_states(self) -> frozenset[str]:
         """The states that count from the deflection."""
         stored, by_position = (
             self.program.stored,
             self.program.step.interface is CommandInterface.POSITION,
         )
-        hold = (HELD,) if self.calendar.holds else ()
-        commands = (*hold, *self.calendar.sent) if by_position else ()
+        hold = (HELD_COMMAND,) if self.calendar.holds else ()
+        commands = (*hold, *self.calendar.pending) if by_position else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
 
     @cached_property
@@ -118,11 +118,11 @@ class SampledLoop:
             w.set({"command": w.nothing})
         elif not w.has("command"):
             # The newest of the delayed commands is issued again.
-            w.rule("command", lambda: w[HELD if calendar.holds else calendar.sent[0]])
+            w.rule("command", lambda: w[HELD_COMMAND if calendar.holds else calendar.pending[0]])
         cut_share = ZERO if turn.is_miss or turn is Turn.ADMITTANCE else ONE
         commands = [
             w.sum((ONE, w["command"]), (cut_share, w[CUT_OFF])),
-            *(w[name] for name in calendar.sent),
+            *(w[name] for name in calendar.pending),
         ]
         ages = [
             *([] if turn is Turn.MOTION else [w["now"]]),
@@ -130,14 +130,14 @@ class SampledLoop:
         ]
         states = {s: w[f"{n}+"] if w.has(f"{n}+") else w[n] for n, s in stored.items()}
         states |= dict(zip(calendar.samples, ages, strict=False))
-        states |= dict(zip(calendar.sent, commands, strict=False))
-        states |= {HELD: commands[0]} if calendar.holds else {}
+        states |= dict(zip(calendar.pending, commands, strict=False))
+        states |= {HELD_COMMAND: commands[0]} if calendar.holds else {}
         bounds = tuple(sizes.get(name, w.nothing) for name in self.program.roundings)
         return Sample(w, states, commands, bounds, w["command"])
 
     def period(self, sample: Sample, rows: Rows) -> Period:
         """Return the map of a sample and of the flow after it; `rows` describe the drive."""
-        w, commands, ages = sample.wires, sample.sent, self.calendar.timing.within
+        w, commands, ages = sample.wires, sample.commands, self.calendar.timing.new_ages
         columns = [
             *(w[name] for name in self.drive.states),
             w[DELTA],
@@ -145,13 +145,13 @@ class SampledLoop:
             *(w.sum((ONE, commands[age]), (-ONE, commands[age + 1])) for age in ages),
         ]
 
-        states = dict(sample.after)
+        states = dict(sample.states)
         for name in (*self.drive.states, DELTA):
             offset = [(ONE, w[DELTA])] if name == DELTA else []
             states[name] = w.sum(*offset, *zip(rows[name], columns, strict=True))
         delta = states[DELTA]
         moves = (
-            w.sum((ONE, states[s]), (-ONE, delta)) if s in self.from_deflection else states[s]
+            w.sum((ONE, states[s]), (-ONE, delta)) if s in self.relative_states else states[s]
             for s in self.states
         )
         return Period(tuple(moves), sample.sizes, sample.command)
@@ -159,6 +159,6 @@ class SampledLoop:
     def _wires(self) -> Wires:
         """Return the wires of a sample: states as they are, inputs and roundings."""
         w = Wires((*self.states, *INPUTS, *self.program.roundings))
-        w.set({s: w.sum((ONE, w[s]), (ONE, w[DELTA])) for s in self.from_deflection})
+        w.set({s: w.sum((ONE, w[s]), (ONE, w[DELTA])) for s in self.relative_states})
         w.set({name: w[text] for name, text in self.program.stored.items()})
         return w

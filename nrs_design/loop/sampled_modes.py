@@ -9,7 +9,7 @@ from itertools import product
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.loop.calendar import Turn
-from nrs_design.loop.flow import AGAIN, HeldDrive
+from nrs_design.loop.flow import HELD_LOAD, HeldDrive
 from nrs_design.loop.free_motion import Loss
 from nrs_design.loop.located import ConstantParameter, LocatedMode, Spot, labelled_ends, spot_of
 from nrs_design.loop.sampled import Contact, Rows, SampledLoop
@@ -24,7 +24,7 @@ NOWHERE = Spot()
 
 
 # The place of drive and load, at corners; force samples there; and flows.
-Touched = tuple[Spot, Sequence[tuple[Spot, Contact]], Sequence[tuple[Spot, Rows]]]
+ContactFlows = tuple[Spot, Sequence[tuple[Spot, Contact]], Sequence[tuple[Spot, Rows]]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,23 +32,23 @@ class Modes:
     """Common data of the modes of a loop."""
 
     loop: SampledLoop
-    held: HeldDrive
+    held_drive: HeldDrive
     environments: tuple[Environment, ...]
     constants: tuple[ConstantParameter, ...]
     loses: bool  # Whether contact may come and go within a period
     # Drives at the corners of their ranges, with labels, in place of an enclosure.
     drives: tuple[tuple[tuple[str, ...], HeldDrive], ...]
-    _known: dict[object, tuple[tuple[Spot, Rows], ...]] = field(default_factory=dict)
+    _cache: dict[object, tuple[tuple[Spot, Rows], ...]] = field(default_factory=dict)
 
     @property
     def _loaded(self) -> bool:
         """Whether the contact force acts on the motor."""
-        return self.held.drive.loaded
+        return self.held_drive.drive.loaded
 
-    def of_controllers(
+    def list_modes(
         self, controllers: Sequence[Controller], laws: Mapping[str, DiscreteLaw], loss: Loss
     ) -> tuple[list[LocatedMode], list[LocatedMode]]:
-        """Return the modes, and those of free motion beside them.
+        """Return the modes of all controllers, and separate modes of free motion at the surface.
 
         Where contact is lost anywhere, a controller moves freely as it does in one more contact.
         """
@@ -57,43 +57,43 @@ class Modes:
         target = modes if loss.anywhere else free if loss is Loss.SURFACE else None
         for c in controllers:
             law = laws[c.name]
-            modes += self._of_controller(c, law)
+            modes += self._list_controller(c, law)
             if c.contacts and target is not None:
-                target += self._of(c.name, (c.name, FREE), law, medium=FREE)
+                target += self._combine(c.name, (c.name, FREE), law, medium=FREE)
         law, turns = next(iter(laws.values())), self.loop.calendar.turns
         if turns[-1].is_miss:
-            modes += self._without_law(turns[-1], law, self.environments, FREE)
+            modes += self._list_idle(turns[-1], law, self.environments, FREE)
             if target is not None:
-                target += self._without_law(turns[-1], law, (), FREE)
+                target += self._list_idle(turns[-1], law, (), FREE)
         if Turn.MOTION in turns:
             # No force sample reaches them.
             contacts = self.environments if self._loaded else ()
-            modes += self._without_law(Turn.MOTION, law, contacts)
-            free += self._without_law(Turn.MOTION, law, contacts, FREE) if free else ()
+            modes += self._list_idle(Turn.MOTION, law, contacts)
+            free += self._list_idle(Turn.MOTION, law, contacts, FREE) if free else ()
         return modes, free
 
-    def _of_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
-        """Yield the modes of a controller in all its contacts; in free motion if it has none."""
+    def _list_controller(self, c: Controller, law: DiscreteLaw) -> Iterator[LocatedMode]:
+        """Yield the modes of a controller in each of its contacts, or in all if it names none."""
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
-            # It is the same there as in contact, unless a sample or the motor feels the force.
+            # Contact changes the mode only if the motor or a later sample shows the force.
             medium = FREE if self.loop.shown_later or self._loaded else ""
-            yield from self._of(c.name, (c.name,), law, medium=medium)
+            yield from self._combine(c.name, (c.name,), law, medium=medium)
             contacts = self.environments if medium else ()
         for e in contacts:
-            yield from self._of(c.name, (c.name, e.name), law, e, contacts)
+            yield from self._combine(c.name, (c.name, e.name), law, e, contacts)
 
-    def _without_law(
+    def _list_idle(
         self, turn: Turn, law: DiscreteLaw, contacts: Sequence[Environment], *suffix: str
     ) -> Iterator[LocatedMode]:
         """Yield the modes of a sample at which no law is computed, in some contacts or in none."""
         name, medium = (MISS, FREE) if turn.is_miss else (str(turn), "")
         for e in contacts:
-            yield from self._of(f"/{name}", (name, e.name), law, e, contacts, (turn,))
+            yield from self._combine(f"/{name}", (name, e.name), law, e, contacts, (turn,))
         if not contacts:
-            yield from self._of(f"/{name}", (name, *suffix), law, turns=(turn,), medium=medium)
+            yield from self._combine(f"/{name}", (name, *suffix), law, turns=(turn,), medium=medium)
 
-    def _of(
+    def _combine(
         self,
         group: str,
         names: tuple[str, ...],
@@ -105,7 +105,7 @@ class Modes:
     ) -> Iterator[LocatedMode]:
         """Yield the modes of a law in a contact or in none, or of turns without a law."""
         turns = turns or tuple(turn for turn in self.loop.calendar.turns if turn.has_law)
-        head = Spot.named(*names)
+        head = Spot.from_names(*names)
         # A force sample matters to a law without force feedback only if it is delayed.
         sampled = turns[0].has_law or (turns[0].is_miss and self.loop.calendar.ages[1] > 0)
         for spot, samples, flows in self._touching(e, contacts, sampled=sampled):
@@ -118,7 +118,7 @@ class Modes:
                             head + spot + label + place + flow,
                             medium if e is None else e.name,
                             self.loop.period(sample, rows),
-                            begins=turn is Turn.BOTH,
+                            starts_round=turn is Turn.BOTH,
                         )
 
     def _samples(
@@ -135,19 +135,19 @@ class Modes:
         for turn, age in product(turns, range(first, last + 1)):
             labels = [f"delay-{age}"] if last > first else []
             labels += [str(turn)] if turn is Turn.ADMITTANCE else []
-            yield turn, age, Spot.named(*labels)
+            yield turn, age, Spot.from_names(*labels)
 
     def _touching(
         self, e: Environment | None, contacts: Sequence[Environment], *, sampled: bool
-    ) -> Iterator[Touched]:
+    ) -> Iterator[ContactFlows]:
         """Yield samples and flows in a contact, for every drive."""
         loaded, forced = self._loaded, self.loop.takes_force
         constants = [c for c in self.constants if c.contact in (None, e and e.name)]
         real = () if loaded or (e is not None and e.depends) else LOAD
-        for labels, drive in self.drives or (((), self.held),):
+        for labels, drive in self.drives or (((), self.held_drive),):
             for load, ranges in self._loads(e, contacts):
                 texts = (*load, *labels)
-                # The load of a drive is told from the sampled force, if a law takes that.
+                # With a law that takes the force, the force sample has ranges of its own.
                 ends = labelled_ends(ranges if sampled and (forced or not loaded) else {})
                 samples = [
                     (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
@@ -155,13 +155,13 @@ class Modes:
                 ]
                 # The contact is no key: a flow names constants of a contact only if it is alone.
                 key = drive, tuple(ranges.items()) if loaded else ()
-                if key not in self._known:
-                    self._known[key] = tuple(
+                if key not in self._cache:
+                    self._cache[key] = tuple(
                         (spot_of(point.labels, {GAIN}, constants, point.curve), point.rows)
-                        for point in drive.flow(ranges, AGAIN if forced else LOAD)
+                        for point in drive.flow(ranges, HELD_LOAD if forced else LOAD)
                     )
                 ends_of = [text.rpartition("-")[0] for text in texts]
-                yield spot_of(texts, ends_of, constants), samples, self._known[key]
+                yield spot_of(texts, ends_of, constants), samples, self._cache[key]
 
     def _loads(
         self, e: Environment | None, contacts: Sequence[Environment]
@@ -171,7 +171,7 @@ class Modes:
         if e is None or not self._loaded or (self.drives and e.depends):
             yield (), ranges
         elif not self.drives:
-            # Within a period it may become another one, or be lost.
+            # Within a period, the contact may change or be lost.
             yield (), anything_of(contacts, losable=self.loses)
         else:
             for labels, values in labelled_ends(ranges):
@@ -181,7 +181,7 @@ class Modes:
 def anything_of(environments: Iterable[Environment], *, losable: bool) -> dict[str, Interval]:
     """Return ranges of stiffness and damping that hold all environments, or free motion.
 
-    `lost`: nothing may be touched, too. What is constant stays so where nothing else is touched.
+    With `losable`, contact may be lost. A constant stays constant only in a single contact.
     """
     loads = [e.load for e in environments]
     return {

@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.loop.located import LocatedMode
-from nrs_design.loop.program import BEFORE, CUT_OFF, INPUTS
+from nrs_design.loop.program import CUT_OFF, INPUTS, LAST_ERROR
 from nrs_design.loop.sampled import SampledLoop
 from nrs_design.loop.shared_state import SharedState
 from nrs_design.models.actuator import Actuator
@@ -36,14 +36,14 @@ INTEGRAL = "integral [rad]"
 ERROR_BEFORE = "error of motion a sample ago"
 
 
-def with_saturation(
+def add_saturation(
     system: SwitchedSystem, conditions: OperatingConditions, actuator: Actuator, state: SharedState
 ) -> SwitchedSystem:
     """Let a statement be about motions in which velocity command and motor command saturate.
 
     The motor is the nominal one; limits and goal are as `nrs_design.spec.combinations` checks.
     """
-    assert conditions.largest_command is not None  # `combinations` asks for it.
+    assert conditions.largest_command is not None  # `nrs_design.spec.combinations` requires it.
     motion, low_pass, modes = state.motion, state.low_pass, system.every_mode
     drive = actuator.gain / actuator.time_constant
     error, omega, columns = _physical(motion, system.order)
@@ -72,7 +72,7 @@ def with_saturation(
         ),
     )
     lags = () if low_pass is None else low_pass.states
-    start = _start(conditions, _rest(system.states, state.environments, lags))
+    start = _start(conditions, _rest_states(system.states, state.environments, lags))
     assumption = Assumption.create(
         "limited.signals",
         velocity=rounded_up(velocity, unit),
@@ -83,7 +83,7 @@ def with_saturation(
     return replace(system, saturation=Saturation(signals, start), assumptions=assumptions)
 
 
-def with_sampled_saturation(
+def add_sampled_saturation(
     system: SwitchedSystem,
     conditions: OperatingConditions,
     loop: SampledLoop,
@@ -94,7 +94,7 @@ def with_sampled_saturation(
 
     Modes of free motion come last; limit and goal are as `nrs_design.spec.combinations` checks.
     """
-    assert conditions.largest_command is not None  # `combinations` asks for it.
+    assert conditions.largest_command is not None  # `nrs_design.spec.combinations` requires it.
     n, wide = len(loop.states), len(loop.states) + len(INPUTS)
 
     def errors(rows: Iterable[LinearForm]) -> tuple[RationalMatrix, ...]:
@@ -127,9 +127,9 @@ def with_sampled_saturation(
             )
         )
     by_position = any(law.law.commands == "position" for law in loop.program.laws)
-    states = _rest(system.states, environments, loop.shown_later)
+    states = _rest_states(system.states, environments, loop.shown_later)
     if by_position:
-        states = [*_with_error_before(loop, commands, states)]
+        states = [*_settle_error(loop, commands, states)]
     command, *integral = [rounded_up(signal.limit, signal.unit) for signal in signals]
     assumption = Assumption.create(
         "limited.sampled",
@@ -146,14 +146,14 @@ def with_sampled_saturation(
     )
 
 
-def _with_error_before(
+def _settle_error(
     loop: SampledLoop, commands: Iterable[LinearForm], states: Iterable[RationalMatrix]
 ) -> Iterator[RationalMatrix]:
     """Yield states at rest in which the error of a sample ago is that of now, in any mode.
 
     The command ``Kp e + D (e - e before)`` is ``(Kp + D) e`` where the error before is zero.
     """
-    before, n = loop.states.index(loop.program.stored[BEFORE]), len(loop.states)
+    before, n = loop.states.index(loop.program.stored[LAST_ERROR]), len(loop.states)
     gain = loop.program.step.Kp + loop.program.step.D
     distinct = {tuple(command[:n]) for command in commands}
     found: dict[RationalMatrix, None] = {}
@@ -193,7 +193,7 @@ def _velocity_command(mode: Mode, motion: Realization | JointMotionLoop) -> Line
     return combine((ONE, A[k]), (-ONE, motion.rates(zero(len(A)))[k]))
 
 
-def _rest(
+def _rest_states(
     states: Sequence[str], environments: Sequence[Environment], lags: Collection[str]
 ) -> list[RationalMatrix]:
     """Return the states at rest with a unit of force, at every stiffness.

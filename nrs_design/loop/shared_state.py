@@ -20,7 +20,7 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.modes import Rows, lead, position_mode, velocity_mode, with_idle, with_last
+from nrs_design.loop.modes import Rows, add_idle, lead, position_mode, replace_last, velocity_mode
 from nrs_design.loop.parameter_box import Box, Joint
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import ZERO
@@ -41,10 +41,10 @@ class SharedState:
     design: ControllerDesign  # Gains that ship
     environments: tuple[Environment, ...]
     realization: Realization  # The motion loop
-    given: bool  # Whether the spec states the motion loop
+    is_stated: bool  # Whether the spec states the motion loop
     joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
     law: CompliantLaw  # Whose states the modes share
-    # Motion of idle states of impedance controllers; None for controllers of one kind.
+    # Rule for idle states; None if all controllers have one kind of command.
     idle: IdleStatesSpec | None = None
     offset: Offset = "none"  # Source of the offset of force controllers
     bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
@@ -60,7 +60,7 @@ class SharedState:
         return self.realization if self.joint is None else self.joint.nominal
 
     @property
-    def placed(self) -> Realization | LoadedMotionLoop:
+    def position_loop(self) -> Realization | LoadedMotionLoop:
         """The motion loop from position to position; its motor has no ranges."""
         return self.realization if self.joint is None else self.joint.nominal.position_loop
 
@@ -69,9 +69,9 @@ class SharedState:
         """Where the motor may be."""
         return Box({}) if self.joint is None else self.joint.box
 
-    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotionLoop:
+    def find_motion(self, values: Mapping[str, Fraction]) -> Realization | JointMotionLoop:
         """Return the motion loop at the values of the motor."""
-        return self.realization if self.joint is None else self.joint.at(values)
+        return self.realization if self.joint is None else self.joint.evaluate(values)
 
     @property
     def memories(self) -> tuple[Environment, ...]:
@@ -79,7 +79,7 @@ class SharedState:
         return tuple(e for e in self.environments if e.memory_rates is not None)
 
     @property
-    def beside(self) -> tuple[str, ...]:
+    def mixed_states(self) -> tuple[str, ...]:
         """States of the laws in a mixture of controllers."""
         moving = (*self.law.states, REFERENCE) if self.law.commands == "velocity" else ()
         return (*moving, *self.bleeding)
@@ -94,8 +94,8 @@ class SharedState:
         sensed = () if self.low_pass is None else self.low_pass.states
         # The deflection: continuous when the stiffness changes in contact.
         contact = () if self.is_placed else self.environments[0].law.states[:1]
-        law_states = self.beside if self.idle is not None else self.law.states
-        moving = self.placed.states if self.is_placed else self.motion.states
+        law_states = self.mixed_states if self.idle is not None else self.law.states
+        moving = self.position_loop.states if self.is_placed else self.motion.states
         if self.idle is not None and self.joint is None:
             moving = tuple(f"xi{i + 1}" for i in range(order))
         return (*moving, *law_states, *sensed, *contact, *memories)
@@ -122,7 +122,7 @@ class SharedState:
         }
         if environment is None:
             return Box(creeps)
-        return Box(environment.parameters, environment.law.inverse).beside(Box(creeps))
+        return Box(environment.parameters, environment.law.inverse).join(Box(creeps))
 
     def rows(
         self, law: CompliantLaw, environment: Environment | None, values: Mapping[str, Fraction]
@@ -136,21 +136,19 @@ class SharedState:
         decay = ZERO if self.idle is None else idle_decay(self.idle)
         if self.is_placed:
             bleeding = decay if others else None
-            rows = position_mode(self.placed, law, contact, self.low_pass, bleeding)
+            rows = position_mode(self.position_loop, law, contact, self.low_pass, bleeding)
         else:
             assert contact is not None
-            rows = velocity_mode(self.motion_at(values), law, contact, self.low_pass)
+            rows = velocity_mode(self.find_motion(values), law, contact, self.low_pass)
         if self.offset != "none":
-            return with_last(rows, lead(self.realization))
+            return replace_last(rows, lead(self.realization))
         integrated = (REFERENCE,) if law.commands == "velocity" else ()
         active = (*law.states, *integrated, *others)
-        mixed = self.beside if self.idle is not None else ()
+        mixed = self.mixed_states if self.idle is not None else ()
         idle = {self.names.index(name): decay for name in mixed if name not in active}
         first = len(self.names) - len(self.memories)
         memories = enumerate(self.memories, first)
-        return with_idle(
-            rows, idle | {i: values[_rate(e)] for i, e in memories if e != environment}
-        )
+        return add_idle(rows, idle | {i: values[_rate(e)] for i, e in memories if e != environment})
 
 
 def _rate(environment: Environment) -> str:
@@ -168,7 +166,7 @@ def shared_state(
         plant.select_environments(design.contacts),
         realize(loop),
         loop.is_stated,
-        Joint.of(plant, design.motion),
+        Joint.from_plant(plant, design.motion),
         design.leading_laws(is_mixture=idle is not None)[0],
         idle,
         conditions.offset,

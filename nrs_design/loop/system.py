@@ -42,7 +42,7 @@ from nrs_design.loop.program import (
 )
 from nrs_design.loop.sampled import NOTHING, SampledLoop
 from nrs_design.loop.sampled_modes import Modes
-from nrs_design.loop.saturation import with_sampled_saturation
+from nrs_design.loop.saturation import add_sampled_saturation
 from nrs_design.models.drive import Drive
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm, coordinates
 from nrs_design.models.plant import Plant
@@ -88,17 +88,17 @@ def close_sampled_loop(
     drive = plant.contact_drive(environments)
     loop = _wired(conditions, sampling, drive, design, tuple(laws.values()))
     held_drive = HeldDrive(drive, loop.calendar.timing)
-    loss = Loss.of(conditions.contact, environments, design, slowed=plant.slowed)
+    loss = Loss.classify(conditions.contact, environments, design, slowed=plant.slowed)
     builder = Modes(
         loop,
         held_drive,
         environments,
         tuple(constants),
-        # A controller without contacts of its own is in any of them.
+        # A controller that names no contacts may be in any contact.
         loss.anywhere or not all(c.contacts for c in design.controllers),
         tuple(held_drive.points()) if points else (),
     )
-    modes, free = builder.of_controllers(design.controllers, laws, loss)
+    modes, free = builder.list_modes(design.controllers, laws, loss)
     items = (*modes, *free)
     channels = tuple(_channels(conditions, design.sensor.lasting, items))
     velocity = coordinates(len(loop.states))[loop.states.index(drive.states[0])]
@@ -137,7 +137,7 @@ def close_sampled_loop(
         enclosures=tuple(enclosures_of(items)),
     )
     if conditions.initial_force is not None:
-        system = with_sampled_saturation(system, conditions, loop, items, environments)
+        system = add_sampled_saturation(system, conditions, loop, items, environments)
     return system, modes
 
 
@@ -181,7 +181,7 @@ def _resets(
 
 def _clock(sampling: SamplingSpec, items: Iterable[LocatedMode]) -> Clock | None:
     """Return the clock of rounds, or of missed deadlines."""
-    first_modes = tuple(item.name for item in items if item.begins)
+    first_modes = tuple(item.name for item in items if item.starts_round)
     if sampling.misses is not None:
         return clock_of(automaton_of(*sampling.misses.window), first_modes)
     return Clock(sampling.round, first_modes) if sampling.round > 1 else None

@@ -31,9 +31,9 @@ class Wires:
         return name in self.known or name in self._rules
 
     def __getitem__(self, name: str) -> LinearForm:
-        """Return a signal; make it, if nobody has asked for it before."""
+        """Return a signal; its rule makes it at the first request."""
         if name not in self.known:
-            # The rule goes first: a signal that is made of itself is asked for without one.
+            # The rule is removed first, so a signal that depends on itself finds no rule.
             make = self._rules.pop(name, None)
             if make is None:
                 raise AssemblyError(

@@ -349,11 +349,11 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     if spec.sampling is not None:
         return assemble_spec(designed.loaded, replace(designed, spec=spec))
     # In continuous time a run may be on tissue for which no bound is stated.
-    from nrs_design.loop.close_loop import with_command
+    from nrs_design.loop.close_loop import add_command
     from nrs_design.loop.shared_state import shared_state
     from nrs_design.spec.build_plant import build_conditions
 
     conditions = build_conditions(spec)
     state = shared_state(conditions, designed.plant, designed.design)
     system = assemble_spec(designed.loaded, designed)
-    return with_command(system, state, disturbances.bounds(), conditions.torque)
+    return add_command(system, state, disturbances.bounds(), conditions.torque)

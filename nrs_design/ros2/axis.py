@@ -151,12 +151,12 @@ def close_axis(law: AdmittanceLaw, axis: Axis, context: ControllerContext) -> Sw
     low, high = context.find_stiffness(axis) or (Fraction(0), Fraction(0))
     frame = _Frame(axis, law.joint_damping, law.filter_coefficient, context)
     others = Box({"D": axis_damping(axis), "E": context.lag_decay})
-    box = Box({"k": Interval(low, low, high)}).beside(others)
+    box = Box({"k": Interval(low, low, high)}).join(others)
     modes = tuple(_modes(frame, box, context.delays, "contact"))
     free = None
     if axis.selected and axis.stiffness == 0 and context.delays[0] == context.delays[1]:
         # Without a spring nothing but the environment knows where the axis is.
-        no_stiffness = Box({"k": Interval.point(Fraction(0))}).beside(others)
+        no_stiffness = Box({"k": Interval.point(Fraction(0))}).join(others)
         free = Contact(tuple(_modes(frame, no_stiffness, context.delays, "free")))
     return SwitchedSystem(
         name=f"{law.node.name}: axis {axis.name}",

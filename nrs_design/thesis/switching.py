@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.controllers.laws import Admittance, ProportionalForce
-from nrs_design.loop.modes import Rows, position_mode, velocity_mode, with_last
+from nrs_design.loop.modes import Rows, position_mode, replace_last, velocity_mode
 from nrs_design.models.contact import Elastic
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, coordinates
@@ -47,7 +47,7 @@ def impedance_rows(stiffness: Fraction, Mt: str, Bt: str, coordinates: str) -> R
 def replace_by_force(rows: Rows, motion: Realization, contact: AbstractLinearLaw) -> Rows:
     """Replace the last state delta by the force ``F = k delta + b Cp xp``."""
     last = coordinates(len(rows))[-1:]
-    return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
+    return replace_last(rows, contact.react(motion.output(len(rows)), last)[0])
 
 
 def hybrid_rows() -> tuple[Rows, Rows]:

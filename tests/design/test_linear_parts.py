@@ -119,7 +119,7 @@ def test_one_entry_is_exact_to_the_last_bit():
     controller = next(c for c in designed.design.controllers if c.name == "force")
     corner = task.corners(designed.spec.controllers[controller.name])[0]
     opened, closed = task.axis.modes(controller.law, corner.contact, corner.place)
-    cut = task.axis.cut(controller.law, corner.contact, corner.place)
+    cut = task.axis.find_loop(controller.law, corner.contact, corner.place)
     assert (characteristic(opened), characteristic(closed)) == (cut.opened, cut.closed)
     loop = open_loops(designed.spec, designed.plant, designed.design)[0]
     added = np.array([[Fraction(x) for x in row] for row in closed]) - np.array(

@@ -209,7 +209,7 @@ def at_points(ranged, measure):
     found = []
     for values in product(*sides):
         contact = ranged.environment.law(*values)
-        cut = ranged.axis.cut(ranged.law, contact, ranged.axis.places[0])
+        cut = ranged.axis.find_loop(ranged.law, contact, ranged.axis.places[0])
         exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
         loops = Loops(*(np.array([p], dtype=np.float64) for p in exact))
         found.append(float(FOUND[measure](loops)[0]))

@@ -12,7 +12,7 @@ import pytest
 
 from nrs_design.design.affine_family import polynomial, real_product
 from nrs_design.design.passivity import first_root
-from nrs_design.loop.cut_loop import on_the_axis
+from nrs_design.loop.cut_loop import apply_bilinear
 
 NEAR = Fraction(1, 10**9)
 
@@ -24,7 +24,7 @@ def is_passive(b, K, B, T):
     is above the real part of N times the conjugate of ``T z^2``; both have a factor x.
     """
     above, below = [K * T + B, -K * T - 2 * B, B], [T, Fraction(0), Fraction(0)]
-    N, D = (polynomial(*on_the_axis(p, Fraction(2))) for p in (above, below))
+    N, D = (polynomial(*apply_bilinear(p, Fraction(2))) for p in (above, below))
     real = real_product(N, D)
     assert real[0] == 0
     P = polynomial(4 * b * T, 4 * b * T) - real.right_shift(1)

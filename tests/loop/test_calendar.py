@@ -18,16 +18,16 @@ MS = F(1, 1000)
 def test_whole_periods_leave_nothing_within_a_period(periods):
     timing = CommandTiming(2 * MS, periods * 2 * MS, periods * 2 * MS)
     assert timing.oldest == timing.newest == periods
-    assert not [*timing.within]
+    assert not [*timing.new_ages]
     assert not timing.varies
 
 
 @by_rows("earliest", "latest", "left")
 def test_what_is_left_of_a_period(earliest, latest, left):
     timing = CommandTiming(2 * MS, F(earliest) * MS, F(latest) * MS)
-    assert [*timing.within] == [*left]
+    assert [*timing.new_ages] == [*left]
     for age, ends in left.items():
-        found = timing.left(age)
+        found = timing.time_left(age)
         assert (found.low, found.high) == tuple(F(end) * MS for end in ends)
 
 
@@ -36,7 +36,7 @@ def test_periods_of_several_lengths_count_as_the_shortest_and_the_longest():
     assert (timing.lengths.low, timing.lengths.high) == (F("1.9") * MS, F("2.1") * MS)
     # A command of two periods, late by 2 ms, after two short ones.
     assert timing.oldest == 2
-    assert timing.left(1).low == F("1.8") * MS
+    assert timing.time_left(1).low == F("1.8") * MS
 
 
 @given(
@@ -59,8 +59,8 @@ def test_no_log_of_commands_leaves_what_is_said(seed, earliest, more, jitter):
         assert min(comes[: i - timing.oldest + 1].min(), comes[i - timing.oldest]) <= begin + small
         if timing.newest:
             assert comes[i - timing.newest + 1 : i + 1].min() >= end - small
-        for age in timing.within:
+        for age in timing.new_ages:
             # From when on some command of this age or newer is in force.
             since = comes[i - age : i + 1].min()
-            left, said = end - min(max(since, begin), end), timing.left(age)
+            left, said = end - min(max(since, begin), end), timing.time_left(age)
             assert float(said.low) - small <= left <= float(said.high) + small

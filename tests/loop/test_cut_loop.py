@@ -79,7 +79,7 @@ def test_the_closed_loop_is_a_mode_of_the_proof(features, seed):
     period = None if axis.period is None else float(axis.period)
     (controller,), soft = designed.design.controllers, designed.plant.environment("soft")
     closed = [
-        z_plane(axis.cut(controller.law, contact, place).closed, period)
+        z_plane(axis.find_loop(controller.law, contact, place).closed, period)
         for contact in (soft.nominal, *soft.corners)
         for place in axis.places
     ]
@@ -107,7 +107,7 @@ def test_margins_and_limit_against_python_control_and_eigenvalues(features, seed
     place = axis.places[-1]
     family = LoopFamily(axis, soft.nominal, gains.get("Kt", Fraction(0)), place)
     loops = family.loops(np.array([Mt]), np.array([Bt]), 40.0)
-    exact = axis.cut(controller.law, soft.nominal, place)
+    exact = axis.find_loop(controller.law, soft.nominal, place)
     period = None if axis.period is None else float(axis.period)
     scale = float(exact.closed[0]) / loops.closed[0][np.flatnonzero(loops.closed[0])[0]]
     kept = loops.closed[0][-len(exact.closed) :] * scale
@@ -115,7 +115,7 @@ def test_margins_and_limit_against_python_control_and_eigenvalues(features, seed
 
     def stable(k):
         contact = KelvinVoigt(Fraction(k), getattr(soft.nominal, "b", Fraction(0)))
-        roots = z_plane(axis.cut(controller.law, contact, place).closed, period)
+        roots = z_plane(axis.find_loop(controller.law, contact, place).closed, period)
         return (np.abs(roots) < 1).all() if period else (roots.real < 0).all()
 
     limit = family.stiffness_limit(Mt, Bt)
@@ -148,7 +148,7 @@ def test_a_force_that_is_older_by_the_delay_margin_is_stable_and_by_more_is_not(
 
     def stable(age):
         place = type(axis.places[0])(axis.places[0].motor, age)
-        roots = z_plane(axis.cut(controller.law, soft.nominal, place).closed, 0.002)
+        roots = z_plane(axis.find_loop(controller.law, soft.nominal, place).closed, 0.002)
         return (np.abs(roots) < 1).all()
 
     assert all(map(stable, range(samples + 1)))
@@ -175,7 +175,7 @@ def test_a_spring_on_the_measured_position_is_cut_with_the_force():
     found = run_design(loaded(STREAMED))
     axis = axis_of(found.spec, found.plant, found.design.motion, found.design.sensor)
     (contact,) = found.plant.environment("tissue").corners
-    loop = axis.cut(found.design.controllers[0].law, contact, axis.places[0])
+    loop = axis.find_loop(found.design.controllers[0].law, contact, axis.places[0])
     T, (a, b) = 0.002, (np.exp(-10 / 0.1 * 0.002), (1 - np.exp(-10 / 0.1 * 0.002)) / 10)
     plant = control.c2d(control.ss(control.tf([1], [0.03, 1, 0])), T)
     for omega in (1.0, 8.0, 40.0, 300.0):

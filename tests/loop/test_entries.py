@@ -65,7 +65,7 @@ def jet(drive, by, width, order):
     at = {s: ball_around(v) for s, v in numbers(drive).items()}
     with precision(240):
         found = Entries(drive).jet(at, ball_around(H), by, ball_around(width), order)
-        assert np.array_equal(floats(Entries(drive).at(at, ball_around(H))), floats(found[0]))
+        assert np.array_equal(floats(Entries(drive).evaluate(at, ball_around(H))), floats(found[0]))
         return [floats(M) for M in found]
 
 
@@ -101,7 +101,7 @@ def test_a_load_that_changes_is_off_by_the_bound_of_the_page(name):
     at, m = {s: ball_around(v) for s, v in numbers(drive).items()}, drive.order + 1
     with precision(240):
         balls = {s: ball_around(w) for s, w in widths.items()}
-        found = floats(Entries(drive).moved(at, ball_around(H), balls))
+        found = floats(Entries(drive).bound_change(at, ball_around(H), balls))
     known, T = numbers(drive), float(H)
 
     def sizes(rows):

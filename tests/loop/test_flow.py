@@ -14,8 +14,8 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
 from nrs_design.loop import hull
 from nrs_design.loop.calendar import CommandTiming
-from nrs_design.loop.flow import AGAIN, HeldDrive
-from nrs_design.loop.hull import around
+from nrs_design.loop.flow import HELD_LOAD, HeldDrive
+from nrs_design.loop.hull import enclose_box
 from nrs_design.loop.sampled import DELTA
 from nrs_design.loop.sampled_modes import anything_of
 from nrs_design.models.contact.elastic import Elastic
@@ -133,7 +133,7 @@ def true_rows(drive, lefts, come, loads):
 
 def draw_rows(rng, drive, timing, touched):
     """Return what a drive of the ranges does in some period."""
-    spans = [timing.steps, *(timing.left(age) for age in timing.within)]
+    spans = [timing.steps, *(timing.time_left(age) for age in timing.new_ages)]
     values = {s: inside(rng, interval) for s, interval in drive.ranges.items()}
     values |= {s: inside(rng, touched.get(s, KNOWN(F(0)))) for s in LOAD}
     period, *lefts = (inside(rng, span) for span in spans)
@@ -355,12 +355,12 @@ def test_points_of_a_curve_are_those_of_its_number():
 
 
 def test_labels_tell_a_load_that_is_felt_again():
-    points = HeldDrive(TORQUE, CommandTiming(T)).flow(TOUCHED, AGAIN)
+    points = HeldDrive(TORQUE, CommandTiming(T)).flow(TOUCHED, HELD_LOAD)
     assert {p.labels[0] for p in points} == {"k held-min", "k held-max"}
 
 
 def test_a_simplex_holds_its_box():
-    points = around({0: F(0), 1: F(5, 2), 2: F(5)}, {0: F(1), 1: F(1, 2), 2: F(0)})
+    points = enclose_box({0: F(0), 1: F(5, 2), 2: F(5)}, {0: F(1), 1: F(1, 2), 2: F(0)})
     assert points == [{0: -1, 1: 2, 2: 5}, {0: 3, 1: 2, 2: 5}, {0: -1, 1: 4, 2: 5}]
     # The far corner of the box is halfway between the two far points.
     assert [(points[1][s] + points[2][s]) / 2 for s in range(3)] == [1, 3, 5]

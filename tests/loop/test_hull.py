@@ -8,7 +8,7 @@ from flint import arb, fmpq, fmpq_mat
 
 from nrs_design.loop import hull
 from nrs_design.loop.entries import highest, lowest
-from nrs_design.loop.hull import EntryCurve, around, nodes, rational, rounded, simplex
+from nrs_design.loop.hull import EntryCurve, enclose_box, nodes, rational, round_balls, simplex
 from nrs_design.proof.enclosure import ball_around, precision
 
 F = Fraction
@@ -36,7 +36,7 @@ def test_what_is_rounded_is_off_by_no_more_than_is_said(seed):
         radius = rng.choice([0.0, 10.0 ** -rng.randint(10, 40)])
         size = 10.0 ** rng.randint(-9, 3)
         balls = [arb(rng.uniform(-size, size), radius) for _ in range(rng.randint(1, 4))]
-        found, error = rounded(balls, off)
+        found, error = round_balls(balls, off)
         pairs = [*zip(balls, found, strict=True)]
         worst = max(max(highest(b) - p, p - lowest(b)) for b, p in pairs)
         assert error >= off + worst
@@ -110,7 +110,7 @@ def test_a_curve_that_is_off_as_far_as_may_be_is_inside(seed, coarse, monkeypatc
 def test_numbers_that_are_off_are_in_the_simplex_around_them():
     middle = {(0, 0, 0): F(1), (0, 0, 1): F(-2), (0, 0, 2): F(3)}
     errors = {(0, 0, 0): F(1, 10), (0, 0, 1): F(0), (0, 0, 2): F(1, 7)}
-    points = around(middle, errors)
+    points = enclose_box(middle, errors)
     assert len(points) == 3
     assert {point[0, 0, 1] for point in points} == {F(-2)}
     for a in (-1, 1):

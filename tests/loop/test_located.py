@@ -43,7 +43,7 @@ def sets_of(names, *parameters):
     for name in names:
         head, where, *labels = name.split("/")
         own = [p for p in parameters if p.contact in (None, where)]
-        spot = module.Spot.named(head, where) + module.spot_of(labels, (), own)
+        spot = module.Spot.from_names(head, where) + module.spot_of(labels, (), own)
         items.append(module.LocatedMode(head, spot, where, module.Period([[1]])))
     return [*module.constant_sets(items, parameters)]
 

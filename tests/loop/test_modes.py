@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.laws import Admittance, IntegralForce, ProportionalForce
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.modes import position_mode, velocity_mode, with_idle
+from nrs_design.loop.modes import add_idle, position_mode, velocity_mode
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.thesis.switching import replace_by_force
@@ -156,4 +156,4 @@ class TestOwnStates:
 
 @by_rows("rates", "expected")
 def test_idle_states_decay_alone(rates, expected):
-    assert with_idle([[F(1), F(2)], [F(3), F(4)]], rates) == expected
+    assert add_idle([[F(1), F(2)], [F(3), F(4)]], rates) == expected

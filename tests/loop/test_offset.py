@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from nrs_design.controllers.laws import PositionControl, ProportionalForce
 from nrs_design.errors import AssemblyError
-from nrs_design.loop.modes import lead, position_mode, with_last
+from nrs_design.loop.modes import lead, position_mode, replace_last
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.matrix import RationalMatrix
@@ -53,7 +53,7 @@ def test_lead_is_command_less_position(numerator, denominator):
 def test_modes_keep_their_poles():
     force, soft = ProportionalForce(F("0.02")), Elastic(F("43.0356"))
     for rows in (position_mode(MOTION, PositionControl()), position_mode(MOTION, force, soft)):
-        assert polynomial(with_last(rows, lead(MOTION))) == polynomial(rows)
+        assert polynomial(replace_last(rows, lead(MOTION))) == polynomial(rows)
 
 
 def test_a_loop_that_does_not_rest_at_its_command_is_refused():
@@ -93,7 +93,7 @@ def test_run_with_the_memory_itself(seed, offset):
         "position": position_mode(MOTION, PositionControl()),
         "force": position_mode(MOTION, ProportionalForce(F("0.02")), Elastic(F(43))),
     }
-    modes = {name: np.array(with_last(A, lead(MOTION)), float) for name, A in rows.items()}
+    modes = {name: np.array(replace_last(A, lead(MOTION)), float) for name, A in rows.items()}
     y = np.array(lead(MOTION), float)
 
     def coordinates(xi, u):

@@ -16,7 +16,7 @@ F = Fraction
 UNIT = Interval(F(1), F(1), F(3))
 X, Y = Box({"x": UNIT}), Box({"y": Interval(F(2), F(-1), F(4))})
 INVERSE = Box({"x": UNIT}, frozenset({"x"}))
-BOTH = X.beside(Y)
+BOTH = X.join(Y)
 shares = st.fractions(0, 1, max_denominator=20)
 
 
@@ -50,7 +50,7 @@ def test_every_value_in_the_box_is_the_same_average_of_corners(c, s, t):
     def entry(x, y):
         return c[0] + c[1] / x + c[2] * y + c[3] * y / x
 
-    found = corners(INVERSE.beside(Y), entry)
+    found = corners(INVERSE.join(Y), entry)
     inverse = (1 - s) * 1 + s * F(1, 3)
     y = (1 - t) * F(-1) + t * F(4)
     weights = [a * b for a, b in product((1 - s, s), (1 - t, t))]
@@ -97,4 +97,4 @@ def test_rows_that_corners_share_are_compared_too(power):
 
 def test_a_symbol_stands_for_one_parameter():
     with pytest.raises(InternalError, match="the symbol x stands for two parameters"):
-        BOTH.beside(INVERSE)
+        BOTH.join(INVERSE)

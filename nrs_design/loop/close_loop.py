@@ -132,8 +132,8 @@ def _loss_of(state: SharedState, contact: str | None, rules: SwitchingSpec) -> L
         raise _not_losable("")
     if loss.anywhere and (rules.names_contacts or next(rules.dwell_times(), None) is not None):
         raise AssemblyError(
-            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
-            "is lost whatever the rules of switching say",
+            "with a spring Kt, free motion is one of the modes, and rules of switching do not "
+            "limit the loss of contact",
             remedy="use `contact: kept`, or rules with transitions between controllers alone",
             at=("switching",),
         )

@@ -146,5 +146,5 @@ def count_stays(
     ahead = tuple(leads(k, spent) for k, count in enumerate(counts) for spent in range(count))
     primary, *others = (tuple(found) for found in modes.values())
     clock = Clock(len(ahead), primary, ahead, tuple(others[:-1]))
-    each = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
-    return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=each),)
+    texts = tuple(f"{name} {count}" for name, count in zip(names, counts, strict=True))
+    return clock, ANY_SIGNAL, (Assumption.create("rules.counted", counts=texts),)

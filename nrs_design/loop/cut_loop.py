@@ -171,13 +171,13 @@ class ContinuousAxis(AbstractAxis):
 
 @dataclass(frozen=True, slots=True)
 class ProcessorAxis(AbstractAxis):
-    """An axis with a sampled law; `interface` is None where the axis commands a motor."""
+    """An axis with a sampled law."""
 
     motion: ProportionalDerivative
     sampling: SamplingSpec
     drive: Drive
     low_pass: LowPass | None = None
-    interface: CommandInterface | None = None
+    interface: CommandInterface | None = None  # None for a motor command
 
     @property
     def period(self) -> Fraction:

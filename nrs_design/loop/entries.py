@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.drive import Drive, MultiAffine
+from nrs_design.models.linear_form import ONE, ZERO
 from nrs_design.proof.enclosure import ball_around, fraction_of
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat
 
-ONE, ZERO = Fraction(1), Fraction(0)
 # Longest period in time constants of the drive: the initial state has decayed long before.
 LONGEST = Fraction(2000)
 
@@ -101,7 +101,7 @@ class Entries:
         """
         from flint import arb_mat
 
-        # A velocity that jumps would need another row; drives with such a velocity carry no load.
+        # No loaded drive has a velocity that jumps, so there is no row for a jump.
         assert self.drive.speed is None or not self.drive.loaded
         m = self.drive.order + 1
         M, total = _sizes(self.rates(values)), arb_mat(m, m)
@@ -132,8 +132,8 @@ class Entries:
 def too_long() -> AssemblyError:
     """Return the error for a period that no enclosure fits."""
     return AssemblyError(
-        "a period is too long for the drive and what it touches: it is too many of their time "
-        "constants, or their ranges are too wide to enclose what they do in it",
+        "a period is too long for the drive and its contact: it has too many of their "
+        "time constants, or their ranges are too wide for an enclosure",
         remedy="sample with a shorter period, or narrow the ranges",
         at=("sampling", "period"),
     )

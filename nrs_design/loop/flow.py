@@ -39,12 +39,12 @@ from nrs_design.loop.located import labelled_ends
 from nrs_design.loop.sampled import DELTA, Rows
 from nrs_design.models.drive import GAIN, LOAD, MEMORY, CommandInterface, Drive
 from nrs_design.models.interval import Interval
+from nrs_design.models.linear_form import ONE, ZERO
 from nrs_design.proof.enclosure import ball_around, precision
 
 if TYPE_CHECKING:
     from flint import arb, arb_mat, fmpq, fmpq_mat
 
-ONE, ZERO = Fraction(1), Fraction(0)
 BITS = 240
 # Labels of the load within a period; `LOAD` labels the load at the force sample.
 HELD_LOAD = ("k held", "b held")
@@ -181,17 +181,17 @@ class _Flow:
         return found
 
     def _keys(self) -> list[Key]:
-        """Return the keys of nonzero entries; later commands have only the column of the command."""
+        """Return the keys of nonzero entries; a later command has only its own column."""
         # The position of a robot that takes positions acts as minus its command, but on a memory.
         n, acts = self.drive.order, self.entries.acting(self.whole)
         memories = {n - 2} if self.drive.memory else set()
         first = [*range(n + 1)] if self.lasting is None else [*range(n)]
-        by_position = self.drive.interface is CommandInterface.POSITION
+        is_position = self.drive.interface is CommandInterface.POSITION
         return [
             (s, i, j)
             for s in range(len(self.spans))
             for i, j in product(range(len(acts)), [n] if s else first)
-            if acts[i][j] and not (by_position and j == n - 1 and i not in memories)
+            if acts[i][j] and not (is_position and j == n - 1 and i not in memories)
         ]
 
     def _ties(self) -> dict[Key, Tie]:

@@ -9,12 +9,12 @@ from math import comb, factorial
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.loop.entries import highest, middle
+from nrs_design.models.linear_form import ONE, ZERO
 from nrs_design.proof.enclosure import ball_around
 
 if TYPE_CHECKING:
     from flint import arb, fmpq, fmpq_mat
 
-ONE, ZERO = Fraction(1), Fraction(0)
 # Bits of a known number (both ends round to one double), and of a range relative to its error.
 KNOWN_BITS, RANGED_BITS = 64, 3
 # Bits of points on a curve, relative to its size: the fewest that suffice, to make proofs fast.
@@ -100,7 +100,7 @@ def _widened(
     still: Mapping[Key, Fraction],
     errors: Mapping[Key, Fraction],
 ) -> tuple[Fraction, list[Point]] | None:
-    """Return the points of a wider simplex, and by which share it is wider; None for a flat one.
+    """Return the relative widening of a simplex, with its points; None for a flat simplex.
 
     A point off by e has weights of at least -w at its corners, by the inverse of their matrix. In
     the simplex whose corners are ``(1 + sum w) p_i - sum w_j p_j`` they are not negative. A far

@@ -41,7 +41,7 @@ class Label(NamedTuple):
     """End of a range, as the name of a mode says it."""
 
     text: str
-    attained: bool  # Whether the end is a value of the spec, not of an enclosure
+    attained: bool  # True for an end of the spec, False for a point of an enclosure
     constant: bool  # Whether the number does not change
 
 

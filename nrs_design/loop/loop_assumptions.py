@@ -191,12 +191,12 @@ def assume_sampled_loop(
     if disturbed:
         yield assume("friction.period")
         yield assume("at-samples.force")
-    by_position = loss in (Loss.LAW_SPECIFIC, Loss.UNDER_FORCE_CONTROL)
+    is_position = loss in (Loss.LAW_SPECIFIC, Loss.UNDER_FORCE_CONTROL)
     yield assume(
         "inputs.sampled",
         beyond=extra,
-        inputs="position" if by_position else "velocity",
-        place=by_position and "position",
+        inputs="position" if is_position else "velocity",
+        place=is_position and "position",
         rest="contact" if loss is Loss.SURFACE else "always",
     )
     if any(c.law.spring for c in design.controllers):

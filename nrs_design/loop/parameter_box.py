@@ -31,8 +31,8 @@ class Box:
     """Where the parameters of a matrix lie."""
 
     ranges: Mapping[str, Interval]  # By symbols such as ``k`` or ``Mt``; a point adds no corners
-    # Positive parameters p with matrices that are affine in 1/p. The ends of 1/p are the inverse
-    # ends of p, so the corners are the same.
+    # Positive parameters p such that matrices are affine in 1/p. The corners are the same: the ends
+    # of 1/p are the inverse ends of p.
     inverse: frozenset[str] = frozenset()
 
     def join(self, box: Box) -> Box:
@@ -65,7 +65,7 @@ class Box:
                 if not row == x == y and any(2 * c != p + q for c, p, q in zip(*rows, strict=True)):
                     message = f"the matrix of mode {name} is not affine in each parameter"
                     raise InternalError(message)
-        corners = (corner for at, corner in known.items() if MIDDLE not in at)
+        corners = (corner for place, corner in known.items() if MIDDLE not in place)
         for (labels, _), corner in zip(labelled_ends(self.ranges), corners, strict=True):
             yield labels, corner
 

@@ -32,7 +32,7 @@ from nrs_design.models.linear_form import ONE, ZERO, LinearForm, combine, coordi
 
 # Inputs that are not zero in the loop of a proof.
 SENSED = frozenset({"angle", "torque", "velocity_command"})
-# A number that is neither zero nor one: products with zero or one need no rounding.
+# Coefficient other than zero and one, whose products need no rounding.
 ANY = Fraction(1, 2)
 # Terms of the list.
 ERROR, KP, KD, DECAY, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
@@ -111,7 +111,8 @@ def list_law(order: int, kinds: Kinds, interface: CommandInterface | None = None
     """Write the list out, and count its roundings.
 
     `order` is the order of the force filter; `interface` is the command of a robot that controls
-    its own motor. An `InternalError` if a term takes a rounded number, and the addition has no bound.
+    its own motor. An `InternalError` if a term takes a rounded number, and the addition has no
+    bound.
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
@@ -272,7 +273,7 @@ class SampledProgram:
 
     step: StepFrame  # Motion controller and filter of the force
     laws: tuple[DiscreteLaw, ...]  # Laws of all controllers, with the exported coefficients
-    # Decay factor of idle states per period; None if all laws have one kind of command.
+    # Decay factor of idle states per period; None without a rule for idle states.
     idle: Fraction | None = None
 
     @cached_property

@@ -31,8 +31,8 @@ from nrs_design.models.drive import OMEGA, CommandInterface, Drive
 from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
 DELTA, HELD_COMMAND = "delta [rad]", "u held"
-# Rows of the states of a drive and of the joint motion. Columns: the states, the deflection, the
-# command in force at the begin of a period, and the changes of the command within the period.
+# Rows of the states of a drive and of the joint motion. The columns are the states, the deflection,
+# the command in force at the begin of a period, and later changes of the command.
 Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]
@@ -70,20 +70,20 @@ class SampledLoop:
         stored, calendar = self.program.stored, self.calendar
         place = [stored[name] for name in self.program.places]
         before = [stored[LAST_ERROR]] if LAST_ERROR in stored else []
-        hold = [HELD_COMMAND] if calendar.holds else []
+        lasting = [HELD_COMMAND] if calendar.holds else []
         others = [text for text in stored.values() if text not in (*place, *before)]
-        leading = (*self.drive.states, *before, *hold, *calendar.pending)
+        leading = (*self.drive.states, *before, *lasting, *calendar.pending)
         return (*place, *leading, *others, *calendar.samples, DELTA)
 
     @cached_property
     def relative_states(self) -> frozenset[str]:
         """The states that count from the deflection."""
-        stored, by_position = (
+        stored, is_position = (
             self.program.stored,
             self.program.step.interface is CommandInterface.POSITION,
         )
-        hold = (HELD_COMMAND,) if self.calendar.holds else ()
-        commands = (*hold, *self.calendar.pending) if by_position else ()
+        lasting = (HELD_COMMAND,) if self.calendar.holds else ()
+        commands = (*lasting, *self.calendar.pending) if is_position else ()
         return frozenset((*commands, *([stored[REFERENCE]] if REFERENCE in stored else [])))
 
     @cached_property

@@ -147,11 +147,11 @@ class Modes:
         for labels, drive in self.drives or (((), self.held_drive),):
             for load, ranges in self._loads(e, contacts):
                 texts = (*load, *labels)
-                # With a law that takes the force, the force sample has ranges of its own.
+                # With a load, a force sample has its own ends only if a law takes the force.
                 ends = labelled_ends(ranges if sampled and (forced or not loaded) else {})
                 samples = [
-                    (spot_of(said, real, constants), (at.get("k", ZERO), at.get("b", ZERO)))
-                    for said, at in ends
+                    (spot_of(tags, real, constants), (values.get("k", ZERO), values.get("b", ZERO)))
+                    for tags, values in ends
                 ]
                 # The contact is no key: a flow names constants of a contact only if it is alone.
                 key = drive, tuple(ranges.items()) if loaded else ()

@@ -126,9 +126,9 @@ def add_sampled_saturation(
                 errors=errors(integrals),
             )
         )
-    by_position = any(law.law.commands == "position" for law in loop.program.laws)
+    is_position = any(law.law.commands == "position" for law in loop.program.laws)
     states = _rest_states(system.states, environments, loop.shown_later)
-    if by_position:
+    if is_position:
         states = [*_settle_error(loop, commands, states)]
     command, *integral = [rounded_up(signal.limit, signal.unit) for signal in signals]
     assumption = Assumption.create(
@@ -138,7 +138,7 @@ def add_sampled_saturation(
         integral=tuple(integral),
         filtered=bool(loop.shown_later) and "samples",
     )
-    start = _start(conditions, states, ERROR_BEFORE if by_position else "")
+    start = _start(conditions, states, ERROR_BEFORE if is_position else "")
     return replace(
         system,
         saturation=Saturation(tuple(signals), start),

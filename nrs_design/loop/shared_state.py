@@ -44,7 +44,7 @@ class SharedState:
     is_stated: bool  # Whether the spec states the motion loop
     joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
     law: CompliantLaw  # Whose states the modes share
-    # Rule for idle states; None if all controllers have one kind of command.
+    # Rule for idle states, if the spec has one
     idle: IdleStatesSpec | None = None
     offset: Offset = "none"  # Source of the offset of force controllers
     bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
@@ -144,8 +144,8 @@ class SharedState:
             return replace_last(rows, lead(self.realization))
         integrated = (REFERENCE,) if law.commands == "velocity" else ()
         active = (*law.states, *integrated, *others)
-        mixed = self.mixed_states if self.idle is not None else ()
-        idle = {self.names.index(name): decay for name in mixed if name not in active}
+        outer = self.mixed_states if self.idle is not None else ()
+        idle = {self.names.index(name): decay for name in outer if name not in active}
         first = len(self.names) - len(self.memories)
         memories = enumerate(self.memories, first)
         return add_idle(rows, idle | {i: values[_rate(e)] for i, e in memories if e != environment})
@@ -211,8 +211,8 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
         )
     if state.joint is not None and not state.joint.ranges.fixed and state.is_placed:
         yield AssemblyError(
-            "ranges of the motor are modelled for impedance controllers alone: where another one "
-            "takes over, the speed jumps by numbers of the motor that are not known",
+            "ranges of the motor are modelled only for impedance controllers: at a switch to "
+            "another controller, the speed jumps by unknown parameters of the motor",
             remedy="give nominal values of the actuator, or add sampling",
             at=("actuator",),
         )

@@ -78,7 +78,7 @@ class Misses:
     def system(self, modes):
         first = family(*modes[:2], time=Time.DISCRETE)
         items = [
-            LocatedMode(name, Spot.named(name), "", Period(mode.A.fractions()))
+            LocatedMode(name, Spot.from_names(name), "", Period(mode.A.fractions()))
             for name, mode in zip(("hit", "miss"), first.modes, strict=True)
         ]
         rule = MissesSpec(mode="miss", at_most=self.most, of=self.of)

@@ -42,24 +42,26 @@ def everywhere(middle: Fraction = Fraction(100)) -> tuple[FrequencyPiece, Freque
     return FrequencyPiece(ZERO, middle), FrequencyPiece(ZERO, 1 / middle, inverse=True)
 
 
-def corners_in(at: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polynomial, ...]]:
+def corners_in(response: Response, ranges: Mapping[str, Interval]) -> list[tuple[Polynomial, ...]]:
     """Return a response at the corners of a box, of which it is a mean at a point inside."""
     ends = [*product((0, 1), repeat=len(ranges))]
     corners = [
-        at({name: (r.low, r.high)[k] for k, (name, r) in zip(end, ranges.items(), strict=True)})
+        response(
+            {name: (r.low, r.high)[k] for k, (name, r) in zip(end, ranges.items(), strict=True)}
+        )
         for end in ends
     ]
     # In the middle an odd error would cancel.
     shares = [Fraction(1, i + 3) for i in range(len(ranges))]
-    inside = at(
+    interior = response(
         {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
     )
     weights = [
         rational(prod((u if k else 1 - u for k, u in zip(end, shares, strict=True)), start=ONE))
         for end in ends
     ]
-    for found, *at_corners in zip(inside, *corners, strict=True):
-        if found != sum(w * p for w, p in zip(weights, at_corners, strict=True)):
+    for found, *corner_parts in zip(interior, *corners, strict=True):
+        if found != sum(w * p for w, p in zip(weights, corner_parts, strict=True)):
             raise InternalError("a response is not affine in the parameters of its loop")
     return corners
 
@@ -85,31 +87,33 @@ class Squares:
 
     def __init__(
         self,
-        below: Sequence[tuple[Polynomial, ...]],
-        above: Sequence[tuple[Polynomial, ...]] | None = None,
+        denominators: Sequence[tuple[Polynomial, ...]],
+        numerators: Sequence[tuple[Polynomial, ...]] | None = None,
         square: Square | None = None,
     ) -> None:
         """Square denominators at the corners, and numerators; without these, one."""
-        sides = [side for side in (below, above) if side is not None]
+        sides = [side for side in (denominators, numerators) if side is not None]
         self._grids = [squared_over(side, square) for side in sides]
         self._size = max(len(p) for grid in self._grids for p in grid)
-        self._parameters = len(below).bit_length() - 1
+        self._parameters = len(denominators).bit_length() - 1
 
     @classmethod
-    def of(cls, at: Response, ranges: Mapping[str, Interval]) -> Self:
+    def of(cls, response: Response, ranges: Mapping[str, Interval]) -> Self:
         """Return the square of a response over a box."""
-        corners = corners_in(at, ranges)
+        corners = corners_in(response, ranges)
         # Powers of s that all polynomials have cancel.
-        rest = min(zeros_at_rest(p) for corner in corners for p in corner)
-        above, below = ([(corner[i].right_shift(rest),) for corner in corners] for i in (0, 1))
-        return cls(below, above)
+        zeros = min(zeros_at_rest(p) for corner in corners for p in corner)
+        numerators, denominators = (
+            [(corner[i].right_shift(zeros),) for corner in corners] for i in (0, 1)
+        )
+        return cls(denominators, numerators)
 
     def bound(self, piece: FrequencyPiece, limit: Fraction | None = None) -> Fraction | None:
         """Return a bound on the quotient in the box and in a piece of the frequencies.
 
         The search ends below the limit, if any; None without a bound.
         """
-        sides = [self._between(grid, piece) for grid in self._grids]
+        sides = [self._interpolate(grid, piece) for grid in self._grids]
         below, above = sides if len(sides) == 2 else (sides[0], [ONE] * len(sides[0]))
         return bound_ratio(above, below, (3,) * self._parameters + (self._size,), limit)
 
@@ -122,7 +126,7 @@ class Squares:
         """Tell whether the denominators are shown to vanish nowhere."""
         return all(self.bound(piece) is not None for piece in pieces)
 
-    def _between(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
+    def _interpolate(self, grid: Sequence[Polynomial], piece: FrequencyPiece) -> list[Any]:
         """Return Bernstein coefficients in omega^2 too."""
         ends = rational(piece.low), rational(piece.high)
         full = ([p[i] for i in range(self._size)] for p in grid)
@@ -144,7 +148,7 @@ def squared_over(
     count = len(corners).bit_length() - 1
     grid = dict(zip(product((0, 2), repeat=count), corners, strict=True))
     for axis in range(count):
-        for at in [at for at in grid if at[axis] == 0]:
+        for at in [index for index in grid if index[axis] == 0]:
             ends = zip(grid[at], grid[(*at[:axis], 2, *at[axis + 1 :])], strict=True)
             grid[(*at[:axis], 1, *at[axis + 1 :])] = tuple((a + b) / 2 for a, b in ends)
     squares = {at: (square or squared_magnitude)(*grid[at]) for at in sorted(grid)}
@@ -183,7 +187,7 @@ def polynomial(*coefficients: Fraction) -> Polynomial:
     return fmpq_poly([rational(c) for c in reversed(coefficients)])
 
 
-def motor_at(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
+def find_motor(axis: ContinuousAxis, values: Mapping[str, Fraction]) -> tuple[Place, Any]:
     """Return the motor at parameters, and the factor that makes polynomials affine in them.
 
     Values are by name, ``Km`` or ``tau``; those that are not given are nominal.

@@ -64,12 +64,12 @@ def root_locus_design(spec: InteractionDesignSpec) -> PdDesign | None:
 
 def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
     given, digits = spec.motion_loop, spec.design.significant_digits
-    wanted = root_locus_design(spec)
-    if wanted is None or given is None:
+    target = root_locus_design(spec)
+    if target is None or given is None:
         return NO_MOTION
     gain = given.derivative_gain
-    Kd = round_significant(wanted.derivative_gain, digits) if gain is None else gain.exact
-    zero = round_significant(wanted.zero, digits) if given.zero is None else given.zero.exact
+    Kd = round_significant(target.derivative_gain, digits) if gain is None else gain.exact
+    zero = round_significant(target.zero, digits) if given.zero is None else given.zero.exact
     shipped = round_float32(Kd)
     motion = ProportionalDerivative(Kp=round_float32(shipped * zero), Kd=shipped)
     if motion.Kp <= 0 or motion.Kd <= 0:
@@ -109,17 +109,17 @@ class DesignAnalysis:
     @property
     def impedance(self) -> tuple[ImpedanceAnalysis, ...]:
         """The impedance controllers."""
-        return self._of(ImpedanceAnalysis)
+        return self._select(ImpedanceAnalysis)
 
     @property
     def force(self) -> tuple[ForceAnalysis, ...]:
         """The force controllers."""
-        return self._of(ForceAnalysis)
+        return self._select(ForceAnalysis)
 
     @property
     def torque(self) -> tuple[TorqueAnalysis, ...]:
         """The controllers that make torques."""
-        return self._of(TorqueAnalysis)
+        return self._select(TorqueAnalysis)
 
     @property
     def tuned(self) -> tuple[AbstractControllerAnalysis, ...]:
@@ -133,7 +133,7 @@ class DesignAnalysis:
             (*self.doubts, *(doubt for item in self.measured for doubt in item.doubts()))
         )
 
-    def _of(self, kind: type[E]) -> tuple[E, ...]:
+    def _select(self, kind: type[E]) -> tuple[E, ...]:
         return tuple(item for item in self.measured if isinstance(item, kind))
 
 

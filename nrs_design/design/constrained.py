@@ -21,7 +21,7 @@ from nrs_design.design.measures import CREEP_MEASURES, Measure
 from nrs_design.errors import DesignError
 from nrs_design.models.axis import unit
 
-_ON_A_BOUND = 1e-3  # Largest relative distance of a gain from its active bound
+_BOUND_TOLERANCE = 1e-3  # Largest relative distance of a gain from its active bound
 
 
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
@@ -65,29 +65,29 @@ def _unreachable(
     problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float
 ) -> DesignError:
     """Name a goal that no admittance meets, or those that none meets together."""
-    (least, most), (low, high) = problem.mass_bounds, problem.damping_bounds
+    (lowest_mass, highest_mass), (low, high) = problem.mass_bounds, problem.damping_bounds
     bounds = (
-        f"Mt in [{least:.6g}, {most:.6g}] {unit('kg m^2')} and Bt in [{low:.6g}, {high:.6g}] "
-        f"{unit('N m s/rad')}"
+        f"Mt in [{lowest_mass:.6g}, {highest_mass:.6g}] {unit('kg m^2')} and "
+        f"Bt in [{low:.6g}, {high:.6g}] {unit('N m s/rad')}"
     )
     for measure, goal in requirement.goals:
-        alone = replace(requirement, goals=((measure, goal),))
-        best = optimize_impedance(problem, alone.violation)
+        single = replace(requirement, goals=((measure, goal),))
+        best = optimize_impedance(problem, single.violation)
         if best.cost >= MISSED:
             return DesignError(
                 f"the goal {measure.goal}, {measure.goal_text(goal)}, cannot be met with {bounds}: "
-                f"the best is {_reached(alone, measure, best.Mt, best.Bt)}",
+                f"the best is {_describe_value(single, measure, best.Mt, best.Bt)}",
                 remedy=_remedy("this goal", problem, best.Mt, best.Bt),
             )
     values = requirement.goals
     missed = [
-        f"{measure.title} {_reached(requirement, measure, Mt, Bt)}"
+        f"{measure.title} {_describe_value(requirement, measure, Mt, Bt)}"
         for measure, goal in values
         if measure.violation(_value(requirement, measure, Mt, Bt)[0], goal) > 0
     ]
-    wanted = ", ".join(f"{measure.goal} {measure.goal_text(goal)}" for measure, goal in values)
+    goals = ", ".join(f"{measure.goal} {measure.goal_text(goal)}" for measure, goal in values)
     return DesignError(
-        f"the goals cannot be met together ({wanted}) with {bounds}: the nearest gains, "
+        f"the goals cannot be met together ({goals}) with {bounds}: the nearest gains, "
         f"Mt = {Mt:.4g} {unit('kg m^2')} and Bt = {Bt:.4g} {unit('N m s/rad')}, have "
         f"{', '.join(missed)}",
         remedy=_remedy("one of these goals", problem, Mt, Bt),
@@ -97,18 +97,18 @@ def _unreachable(
 def _remedy(goals: str, problem: ImpedanceProblem, Mt: float, Bt: float) -> str:
     """Advise other goals, and other bounds where the best gains lie on a bound."""
     gains = {"Mt": (Mt, problem.mass_bounds), "Bt": (Bt, problem.damping_bounds)}
-    held = [
+    bounds = [
         name
         for name, (value, ends) in gains.items()
-        if any(isclose(value, end, rel_tol=_ON_A_BOUND) for end in ends)
+        if any(isclose(value, end, rel_tol=_BOUND_TOLERANCE) for end in ends)
     ]
-    widen = f", widen the bounds of {' and '.join(held)}" if held else ""
+    widen = f", widen the bounds of {' and '.join(bounds)}" if bounds else ""
     return f"relax {goals}{widen}, or narrow the ranges of the contacts"
 
 
-def _reached(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> str:
-    value, where = _value(requirement, measure, Mt, Bt)
-    return f"{measure.text(value)} ({where})"
+def _describe_value(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> str:
+    value, place = _value(requirement, measure, Mt, Bt)
+    return f"{measure.text(value)} ({place})"
 
 
 def _value(requirement: Requirement, measure: Measure, Mt: float, Bt: float) -> tuple[float, str]:

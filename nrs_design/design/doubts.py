@@ -33,11 +33,11 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -
     found = [item for item in achieved if is_unusual(item.measure, achieved)]
     if not found:
         return
-    beyond = max(map(_beyond, found))
+    excess = max(map(_excess, found))
     peak = next((item for item in found if item.measure is SENSITIVITY_PEAK), None)
     if peak is not None and math.isinf(peak.value):
         text = f"{name}: the loop is unstable at {peak.where}"
-        yield Doubt(("controllers", name), text, beyond=beyond)
+        yield Doubt(("controllers", name), text, beyond=excess)
         return
     bad = (
         f"{item.measure.title} {item.measure.text(item.value)} (usual: {item.measure.usual})"
@@ -45,15 +45,15 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...], *, provable: bool) -
     )
     keys = [item.measure.goal for item in found if provable or item.everywhere]
     advice = f"; a goal says what is accepted: {', '.join(keys)}" if keys else ""
-    yield Doubt(("controllers", name), f"{name}: {', '.join(bad)}{advice}", beyond=beyond)
+    yield Doubt(("controllers", name), f"{name}: {', '.join(bad)}{advice}", beyond=excess)
 
 
 def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
     """Tell whether a measure is beyond its usual limit, and no goal speaks of it."""
     given = {item.measure for item in achieved if item.goal is not None}
-    judged = given.union(MARGINS) if given & {SENSITIVITY_PEAK, DISK_MARGIN} else given
+    measures = given.union(MARGINS) if given & {SENSITIVITY_PEAK, DISK_MARGIN} else given
     limit = measure.doubtful
-    if limit is None or measure in judged:
+    if limit is None or measure in measures:
         return False
     values = (item.value for item in achieved if item.measure == measure)
     if measure is IMPEDANCE_ERROR:
@@ -62,7 +62,7 @@ def is_unusual(measure: Measure, achieved: tuple[Achieved, ...]) -> bool:
     return any(not math.isnan(v) and measure.violation(v, limit) > 0 for v in values)
 
 
-def _beyond(item: Achieved) -> float:
+def _excess(item: Achieved) -> float:
     """Return a value over the usual limit of its measure, or the limit over the value."""
     assert item.measure.doubtful is not None, "it is unusual"
     return 1 + item.measure.violation(item.value, item.measure.doubtful)
@@ -106,12 +106,12 @@ def doubt_stiffness(
         if highest < limit or math.isnan(limit):
             continue
         enough = enough_damping(requirement, contact.name, Mt, Bt, highest)
-        held = "no Bt would hold it"
+        remark = "no Bt would hold it"
         if enough is not None:
-            held = f"Bt = {enough:g} {unit('N*m*s/rad')} would just hold it, while constant"
+            remark = f"Bt = {enough:g} {unit('N*m*s/rad')} would just hold it, while constant"
         text = (
             f"{name}: {contact.name} is up to {highest:.6g} {unit('N*m/rad')} stiff, and its gains "
-            f"hold less than {limit:.6g}; {held} (floating point, not a proof)"
+            f"hold less than {limit:.6g}; {remark} (floating point, not a proof)"
         )
         yield Doubt(("controllers", name), text)
 
@@ -129,7 +129,7 @@ def enough_damping(
         return limits[environment][0] > stiffness
 
     decades = range(floor(log10(Bt)), floor(log10(Bt)) + _DECADES + 1)
-    tried = [float(f"{n}e{decade - 2}") for decade in decades for n in range(100, 1000)]
-    higher = [damping for damping in tried if Bt < damping <= 10**_DECADES * Bt]
+    candidates = [float(f"{n}e{decade - 2}") for decade in decades for n in range(100, 1000)]
+    higher = [damping for damping in candidates if Bt < damping <= 10**_DECADES * Bt]
     first = bisect_left(higher, True, key=holds)
     return higher[first] if first < len(higher) else None

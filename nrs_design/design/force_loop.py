@@ -66,8 +66,8 @@ def design_force_gain(motion: TransferFunction, stiffness: float, damping_ratio:
     reaches it, the `DesignError` names the interval that gains do reach.
     """
     for loop_gain in (0.0, *_crossings(motion, damping_ratio)):
-        reached = _damping(motion, loop_gain)
-        if reached is not None and abs(reached - damping_ratio) <= 1e-9:
+        damping = _damping(motion, loop_gain)
+        if damping is not None and abs(damping - damping_ratio) <= 1e-9:
             return loop_gain / stiffness
     raise DesignError(
         f"no force gain gives the damping ratio {damping_ratio:.6g}",
@@ -114,7 +114,7 @@ def _reachable(motion: TransferFunction) -> str:
     return f"{min(reached):.5g} to {min(1.0, max(reached)):.5g}"
 
 
-_REST = 1e-9  # How far G(0) may be from 1 by rounding
+_STATIC_ERROR = 1e-9  # How far G(0) may be from 1 by rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,11 +137,11 @@ def steady_force_error(
     ``e = v / Kv`` is the lead of the command at the switch; with the measured position it is zero.
     G leads from commanded to actual position; with an offset, G(0) must be 1.
     """
-    at_rest = 1 + gain * stiffness * static_gain(motion)
+    static_response = 1 + gain * stiffness * static_gain(motion)
     if approach.offset == "none":
-        return 1 / at_rest
+        return 1 / static_response
     left = _lead(motion, approach) if approach.offset == "reference" else 0.0
-    return abs(stiffness * left / (at_rest * approach.force))
+    return abs(stiffness * left / (static_response * approach.force))
 
 
 def peak_force(
@@ -167,13 +167,13 @@ def peak_force(
     closed[n, :n] = stiffness * C
     closed[n - 1, n] = -approach.integral
     rates = np.linalg.eigvals(closed if approach.integral else closed[:n, :n])
-    beyond = largest(closed, np.eye(n + 1)[n], start, rates.astype(np.complex128))
-    return approach.force + max(beyond, 0.0)
+    overshoot = largest(closed, np.eye(n + 1)[n], start, rates.astype(np.complex128))
+    return approach.force + max(overshoot, 0.0)
 
 
 def _lead(motion: TransferFunction, approach: Approach) -> float:
     """Return how far the command is before the position on a ramp, in rad."""
-    if abs(static_gain(motion) - 1) > _REST:
+    if abs(static_gain(motion) - 1) > _STATIC_ERROR:
         raise DesignError(
             "an offset is not modelled for a motion loop that does not rest at its command: "
             f"G(0) = {static_gain(motion):.6g}",

@@ -41,7 +41,7 @@ from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 
 # Largest relative distance of a proved value from the worst found, to be shown instead.
-_NEAR = 0.02
+_RELATIVE_GAP = 0.02
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
 
@@ -66,8 +66,10 @@ class Achieved:
     @property
     def bound(self) -> Fraction | None:
         """The proved value, where it is close to the worst value found."""
-        near = self.proved is not None and isclose(self.proved, self.value, rel_tol=_NEAR)
-        return self.proved if near else None
+        is_close = self.proved is not None and isclose(
+            self.proved, self.value, rel_tol=_RELATIVE_GAP
+        )
+        return self.proved if is_close else None
 
     @property
     def text(self) -> str:
@@ -98,8 +100,8 @@ class Achieved:
         """Whether what is proved reaches the goal."""
         if self.proved is None or self.goal is None:
             return False
-        wanted = Fraction(self.goal)
-        return self.proved <= wanted if self.measure.upper else self.proved >= wanted
+        limit = Fraction(self.goal)
+        return self.proved <= limit if self.measure.upper else self.proved >= limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,70 +134,74 @@ class AbstractRequirement(ABC):
         count = len(gains[0]) if gains else 1
         if self.axis is None and measure not in measures.CREEP_MEASURES:
             return np.full(count, np.nan), [NOT_COMPUTED] * count
-        corners = [*self._measured_at(measure)]
+        corners = [*self._iterate_corners(measure)]
         if measure in _MARGINS:
-            table = np.array([_MARGINS[measure](loops) for loops in self._every(*gains)])
+            table = np.array([_MARGINS[measure](loops) for loops in self._loops(*gains)])
         else:
             table = np.array([self._at(corner, measure, *gains) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
         values = np.take_along_axis(table, worst[None, :], axis=0)[0]
-        in_the_air = measure in measures.CREEP_MEASURES
-        return values, ["free motion" if in_the_air else corners[i].label for i in worst]
+        is_free = measure in measures.CREEP_MEASURES
+        return values, ["free motion" if is_free else corners[i].label for i in worst]
 
-    def achieved(self, asked: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
+    def achieved(self, measures_asked: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
         """Return the worst value of every measure, beside its goal.
 
         Where corners meet the goal, it is also looked for between them.
         """
-        return tuple(self._achieved(measure, *gains) for measure in asked)
+        return tuple(self._achieved(measure, *gains) for measure in measures_asked)
 
     def _achieved(self, measure: Measure, *gains: float) -> Achieved:
-        own = tuple(np.array([gain]) for gain in gains)
-        (value,), (where,) = self.values(measure, *own)
+        arrays = tuple(np.array([gain]) for gain in gains)
+        (value,), (place,) = self.values(measure, *arrays)
         found = Achieved(
             measure,
             float(value),
-            where,
+            place,
             dict(self.goals).get(measure),
             everywhere=measure in measures.MONOTONE or self._is_one_point(measure),
         )
         if found.goal is None or found.standing is not GoalStanding.NOT_JUDGED or np.isnan(value):
             return found
-        (value,), (where,) = replace(self, corners=self._between).values(measure, *own)
-        beyond = replace(found, value=float(value), where=where)
-        return beyond if beyond.standing is GoalStanding.MISSED else found
+        (value,), (place,) = replace(self, corners=self._inner_corners).values(measure, *arrays)
+        worst = replace(found, value=float(value), where=place)
+        return worst if worst.standing is GoalStanding.MISSED else found
 
-    def _every(self, *gains: FloatArray) -> list[Loops]:
+    def _loops(self, *gains: FloatArray) -> list[Loops]:
         """Return the open loops at all corners, made once for all measures of the same gains."""
         key = tuple(each.tobytes() for each in gains)
-        if key not in self._known:
-            self._known.clear()
-            self._known[key] = [self.loops(corner, *gains) for corner in self.corners]
-        return self._known[key]
+        if key not in self._cache:
+            self._cache.clear()
+            self._cache[key] = [self.loops(corner, *gains) for corner in self.corners]
+        return self._cache[key]
 
     @cached_property
-    def _known(self) -> dict[tuple[bytes, ...], list[Loops]]:
+    def _cache(self) -> dict[tuple[bytes, ...], list[Loops]]:
         return {}
 
-    def _measured_at(self, measure: Measure) -> Iterator[ContactCorner]:
-        return (corner for corner in self.corners if corner.home or measure not in measures.AT_HOME)
+    def _iterate_corners(self, measure: Measure) -> Iterator[ContactCorner]:
+        return (
+            corner
+            for corner in self.corners
+            if corner.home or measure not in measures.CONTACT_MEASURES
+        )
 
     def _is_one_point(self, measure: Measure) -> bool:
         """Tell whether nothing has a range; each age of the force counts alone."""
         found: dict[tuple[str, int], set[object]] = {}
-        for corner in self._measured_at(measure):
+        for corner in self._iterate_corners(measure):
             place = replace(corner.place, age=0, texts=())
             point = corner.contact, place, corner.Kt
             found.setdefault((corner.environment, corner.place.age), set()).add(point)
         return all(len(points) == 1 for points in found.values())
 
     @cached_property
-    def _between(self) -> tuple[ContactCorner, ...]:
+    def _inner_corners(self) -> tuple[ContactCorner, ...]:
         """Points of the contacts between their corners."""
         groups: dict[tuple[str, Place], list[ContactCorner]] = {}
         for corner in self.corners:
             groups.setdefault((corner.environment, corner.place), []).append(corner)
-        return tuple(inner for group in groups.values() for inner in _inside(group))
+        return tuple(inner for group in groups.values() for inner in _inner_points(group))
 
     @abstractmethod
     def loops(self, corner: ContactCorner, *gains: FloatArray) -> Loops:
@@ -234,7 +240,7 @@ class Requirement(AbstractRequirement):
 
     def corner(self, label: str) -> ContactCorner:
         """Return the corner, or point between corners, of a label."""
-        points = (*self.corners, *self._between)
+        points = (*self.corners, *self._inner_corners)
         return next(corner for corner in points if corner.label == label)
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
@@ -260,14 +266,16 @@ class Requirement(AbstractRequirement):
         """
         if self.axis is None or (corner.Kt and self.axis.period is not None):
             return None
-        (found,) = self._shown(corner, np.array([Mt]), np.array([Bt])).response(omega)
+        (found,) = self._displayed_loops(corner, np.array([Mt]), np.array([Bt])).response(omega)
         return np.asarray(found)
 
-    def _shown(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
+    def _displayed_loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
         """Return the displayed impedances at a corner, as what is open."""
         loops = self.loops(corner, Mt, Bt)
-        above, below = self.family(corner).over_admittance(Mt, Bt)
-        return Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
+        numerator, denominator = self.family(corner).over_admittance(Mt, Bt)
+        return Loops(
+            multiply(loops.numerator, numerator), multiply(loops.closed, denominator), loops.period
+        )
 
     def stiffness_limits(self, Mt: float, Bt: float) -> dict[str, tuple[float, str]]:
         """Return the smallest stiffness limit in N m/rad in every environment, and where it is."""
@@ -300,15 +308,15 @@ class Requirement(AbstractRequirement):
             angle = self.force_error / float(corner.Kt) if corner.Kt else np.inf
             return np.full_like(Bt, angle)
         if measure in (measures.TRANSPARENCY, measures.HAND_EFFORT):
-            return self._held(corner, measure, Mt, Bt)
+            return self._measure_hand(corner, measure, Mt, Bt)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
-        shown = self._shown(corner, Mt, Bt)
-        low, high = gain_extremes(shown.numerator, shown.denominator, self._seen_bandwidth)
+        loops = self._displayed_loops(corner, Mt, Bt)
+        low, high = gain_extremes(loops.numerator, loops.denominator, self._seen_bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(self.loops(corner, Mt, Bt).stable, error, np.inf)
 
-    def _held(
+    def _measure_hand(
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> FloatArray:
         """Return a measure of the hand that holds the robot."""
@@ -364,7 +372,7 @@ class ForceRequirement(AbstractRequirement):
         """Return the open loop at a corner."""
         assert self.axis is not None, "without an axis there are no loops"
         cut = self.axis.find_loop(self.law, corner.contact, corner.place)
-        return Loops.of_cut(cut, self.axis.period)
+        return Loops.from_cut(cut, self.axis.period)
 
 
 def corners_of(
@@ -389,7 +397,7 @@ def corners_of(
     return tuple(found)
 
 
-def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
+def _inner_points(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
     """Yield points of the box whose corners are a group, and those corners."""
     yield from group
     first = group[0]
@@ -404,8 +412,8 @@ def _inside(group: Sequence[ContactCorner]) -> Iterator[ContactCorner]:
     for values in product(*grids):
         if values not in known:
             contact = type(first.contact)(*values)
-            at = (*contact.texts(unit), *first.place.texts)
-            yield replace(first, contact=contact, label=f"{first.environment}, {', '.join(at)}")
+            texts = (*contact.texts(unit), *first.place.texts)
+            yield replace(first, contact=contact, label=f"{first.environment}, {', '.join(texts)}")
 
 
 _MARGINS = {

@@ -61,7 +61,7 @@ class ImpedanceLoop:
         )
 
     @property
-    def drawn(self) -> FloatArray:
+    def spring_part(self) -> FloatArray:
         """The part of the denominator of L from the spring: Kt times that of ``G Ze H``, over s."""
         return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
 
@@ -75,11 +75,11 @@ def stabilizes(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
 def characteristic_polynomials(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
     """Stack the characteristic polynomials; the leading entry is zero where Mt is."""
     contact, den = loop.forward
-    rest = np.zeros(len(den) + 1)
-    rest[-len(contact) :] = contact
-    rest[-len(loop.drawn) :] += loop.drawn
+    zeros = np.zeros(len(den) + 1)
+    zeros[-len(contact) :] = contact
+    zeros[-len(loop.spring_part) :] += loop.spring_part
     inert, damped = np.append(den, 0.0), np.insert(den, 0, 0.0)
-    return np.asarray(Mt[..., None] * inert + Bt[..., None] * damped + rest)
+    return np.asarray(Mt[..., None] * inert + Bt[..., None] * damped + zeros)
 
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
@@ -118,7 +118,7 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
     broadcast; stability is not checked.
     """
     Mt, Bt = np.broadcast_arrays(np.asarray(Mt, np.float64), np.asarray(Bt, np.float64))
-    return _cost_by(problem, NODES)(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
+    return _cost_function(problem, NODES)(Mt.ravel(), Bt.ravel()).reshape(Mt.shape)
 
 
 def optimize_impedance(
@@ -143,23 +143,25 @@ def optimize_impedance(
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
             at=("Bt",),
         )
-    (Mt,), (Bt,) = _admittance_at(problem, np.array([u]), np.array([v]))
+    (Mt,), (Bt,) = _map_admittance(problem, np.array([u]), np.array([v]))
     return ImpedanceOptimum(float(Mt), float(Bt), cost)
 
 
-def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
+def _cost_function(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost of arrays of Mt and Bt, by so many frequencies."""
     omega: FloatArray = (np.arange(nodes, dtype=np.float64) + 0.5) * (problem.bandwidth / nodes)
     # The impedance of a hand with a mass is improper, hence no transfer function.
-    above, below = (np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance)
-    forward = frequency_response(problem.loop.motion, omega) * above / below
+    numerator, denominator = (
+        np.polyval(part, 1j * omega) for part in problem.loop.contact.impedance
+    )
+    forward = frequency_response(problem.loop.motion, omega) * numerator / denominator
     filtered = forward / np.polyval(problem.loop.lags, 1j * omega)
-    target, drawn = np.log10(problem.desired / np.abs(forward)), problem.loop.Kt / omega
+    target, spring = np.log10(problem.desired / np.abs(forward)), problem.loop.Kt / omega
 
-    def of_block(Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        reactance = Mt[:, None] * omega - drawn
-        beside = (reactance + filtered.imag) ** 2 + (Bt[:, None] + filtered.real) ** 2
-        squared = (reactance**2 + Bt[:, None] ** 2) / beside  # |L|^2, and |Zdisp| = |G Ze| |L|
+    def block_cost(Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+        reactance = Mt[:, None] * omega - spring
+        magnitude = (reactance + filtered.imag) ** 2 + (Bt[:, None] + filtered.real) ** 2
+        squared = (reactance**2 + Bt[:, None] ** 2) / magnitude  # |L|^2, and |Zdisp| = |G Ze| |L|
         displayed = np.abs(target - 0.5 * np.log10(squared)).mean(axis=1)
         robust = np.sqrt(squared).mean(axis=1)
         cost = problem.weight_displayed * displayed + problem.weight_sensitivity * robust
@@ -168,41 +170,43 @@ def _cost_by(problem: ImpedanceProblem, nodes: int) -> Objective:
     def cost(Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         # In blocks that stay in the processor's cache.
         starts = range(0, len(Mt), _BLOCK)
-        parts = [of_block(Mt[i : i + _BLOCK], Bt[i : i + _BLOCK]) for i in starts]
+        parts = [block_cost(Mt[i : i + _BLOCK], Bt[i : i + _BLOCK]) for i in starts]
         return np.concatenate(parts) if parts else np.empty(0)
 
     return cost
 
 
-def _admittance_at(
+def _map_admittance(
     problem: ImpedanceProblem, u: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Map the unit square onto the bounds of Mt and Bt, corners exactly onto corners.
 
     A u below the search's tolerance counts as the bound itself.
     """
-    (low, high), (least, most) = problem.mass_bounds, problem.damping_bounds
+    (low, high), (lowest, highest) = problem.mass_bounds, problem.damping_bounds
     u = np.where(u < TOLERANCE, 0.0, u)
     Mt = np.where(u >= 1, high, low + (high - low) * u**3)
-    Bt = np.where(v >= 1, most, least * (most / least) ** v)
+    Bt = np.where(v >= 1, highest, lowest * (highest / lowest) ** v)
     return Mt, Bt
 
 
 def _objective(problem: ImpedanceProblem, nodes: int, violation: Objective | None) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    cost = _cost_by(problem, nodes)
+    cost = _cost_function(problem, nodes)
     stabilizing = problem.stable or partial(stabilizes, problem.loop)
 
     def objective(u: FloatArray, v: FloatArray) -> FloatArray:
-        Mt, Bt = _admittance_at(problem, u, v)
+        Mt, Bt = _map_admittance(problem, u, v)
         stable = stabilizing(Mt, Bt)
         Mt, Bt = Mt[stable], Bt[stable]
-        costs, own = np.full(len(u), np.inf), cost(Mt, Bt)
+        costs, trial_costs = np.full(len(u), np.inf), cost(Mt, Bt)
         if violation is not None:
             missed = violation(Mt, Bt)
             # From 0 to 1, also where a corner is unstable and the violation is infinite.
-            own = np.where(missed > 0, MISSED + 1 - 1 / (1 + np.maximum(missed, 0)), own)
-        costs[stable] = own
+            trial_costs = np.where(
+                missed > 0, MISSED + 1 - 1 / (1 + np.maximum(missed, 0)), trial_costs
+            )
+        costs[stable] = trial_costs
         return costs
 
     return objective

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
 # Coefficients that are looked at before the search ends.
-MOST = 40_000
+MAX_PIECES = 40_000
 ZERO = Fraction(0)
 
 Tensor = Sequence[Any]  # Rational numbers or balls, the last index turning fastest
@@ -37,7 +37,7 @@ def bound_ratio(
     denominator: Tensor,
     shape: Sequence[int],
     limit: Fraction | None = None,
-    most: int = MOST,
+    max_pieces: int = MAX_PIECES,
 ) -> Fraction | None:
     """Return an upper bound on a quotient of polynomials in the unit box; None without one.
 
@@ -45,12 +45,12 @@ def bound_ratio(
     each direction. The box with the highest bound is halved until the quotient has a bound, and
     one below the limit, if there is a limit and the quotient does not exceed it.
     """
-    order, spent, size, least = count(), 0, prod(shape), ZERO
+    order, spent, size, lower_bound = count(), 0, prod(shape), ZERO
     boxes: list[tuple[bool, Fraction, int, _Box]] = []
 
     def take(box: _Box) -> None:
-        nonlocal least
-        least = max(least, *box.values())
+        nonlocal lower_bound
+        lower_bound = max(lower_bound, *box.values())
         bound = box.bound()
         # Those without a bound first, then the highest.
         heappush(boxes, (bound is not None, -(bound or ZERO), next(order), box))
@@ -59,9 +59,9 @@ def bound_ratio(
         take(_Box(_as_balls(numerator, shape), _as_balls(denominator, shape)))
         while True:
             bounded, negative, _, box = boxes[0]
-            exceeded = limit is not None and least > limit
-            below = bounded and (limit is None or -negative <= limit)
-            if below or exceeded or spent > most:
+            exceeded = limit is not None and lower_bound > limit
+            is_within = bounded and (limit is None or -negative <= limit)
+            if is_within or exceeded or spent > max_pieces:
                 return -negative if bounded else None
             heappop(boxes)
             for half in box.halves():
@@ -73,43 +73,45 @@ def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
     """Return Bernstein coefficients between two numbers, of powers from the lowest on."""
     n, span = len(powers) - 1, high - low
     # In u, where x = low + span u.
-    moved = [
+    shifted = [
         span**j * sum(powers[k] * comb(k, j) * low ** (k - j) for k in range(j, n + 1))
         for j in range(n + 1)
     ]
-    return [sum(moved[k] * comb(i, k) / comb(n, k) for k in range(i + 1)) for i in range(n + 1)]
+    return [sum(shifted[k] * comb(i, k) / comb(n, k) for k in range(i + 1)) for i in range(n + 1)]
 
 
 @dataclass(frozen=True, slots=True)
 class _Box:
     # above, below: coefficients, balls in an array with an axis for each direction.
-    above: Balls
-    below: Balls
+    numerator: Balls
+    denominator: Balls
 
     def bound(self) -> Fraction | None:
         """Return an upper bound on the quotient in the box; None without one."""
-        if not all(a > 0 for a in self.below.flat):
+        if not all(a > 0 for a in self.denominator.flat):
             return None
-        ratios: Balls = self.above / self.below
+        ratios: Balls = self.numerator / self.denominator
         # Ends of balls have no radius, so that one of two is surely the larger.
         return max(ZERO, fraction_of(max(ratio.upper() for ratio in ratios.flat)))
 
     def values(self) -> Iterator[Fraction]:
         """Yield zero, and a lower bound on the quotient at each vertex."""
         yield ZERO
-        for corner in product((0, -1), repeat=self.below.ndim):
-            if self.below[corner] > 0:
-                yield fraction_of((self.above[corner] / self.below[corner]).lower())
+        for corner in product((0, -1), repeat=self.denominator.ndim):
+            if self.denominator[corner] > 0:
+                yield fraction_of((self.numerator[corner] / self.denominator[corner]).lower())
 
     def halves(self) -> Iterator[_Box]:
         """Yield the halves of the box in the direction in which both polynomials change most."""
-        changes = np.max([_changes(values) for values in (self.above, self.below)], axis=0)
+        changes = np.max(
+            [_changes(values) for values in (self.numerator, self.denominator)], axis=0
+        )
         axis = int(changes.argmax())
-        for parts in zip(_halved(self.above, axis), _halved(self.below, axis), strict=True):
+        for parts in zip(_halve(self.numerator, axis), _halve(self.denominator, axis), strict=True):
             yield _Box(*parts)
 
 
-def _halved(values: Balls, axis: int) -> tuple[Balls, ...]:
+def _halve(values: Balls, axis: int) -> tuple[Balls, ...]:
     """Return the coefficients in both halves of a box."""
     line, low, high = [*np.moveaxis(values, axis, 0)], [], []
     while line:

@@ -68,14 +68,14 @@ def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
     # From velocities to velocities, or from positions to positions.
     command, motion = ("command", "rad/s or rad"), ("motion", "rad/s or rad")
     return LinearParts(
-        _of_transfer(
+        _part_of_transfer(
             "actuator",
             (plant.actuator.gain,),
             lag,
             ("command", design.command),
             ("position", "rad"),
         ),
-        _of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
+        _part_of_transfer("motion_loop", loop.numerator, loop.denominator, command, motion),
         tuple(
             _controller_part(item, measured=design.takes is CommandInterface.VELOCITY)
             for item in design.controllers
@@ -92,17 +92,17 @@ def _controller_part(controller: Controller, *, measured: bool) -> LinearPart:
     `measured` position, the force of the spring is a part of its input.
     """
     law = controller.law
-    own, spring = len(law.states), 0 if measured else law.spring
-    size = own + (spring != 0) + 1
+    count, spring = len(law.states), 0 if measured else law.spring
+    size = count + (spring != 0) + 1
     forms = coordinates(size)
     force = list(forms[-1])
     if spring:
-        force[own] -= spring
-    command, rates = law.respond(force, forms[:own])
+        force[count] -= spring
+    command, rates = law.respond(force, forms[:count])
     if spring:
         rates = [*rates, [-entry for entry in command]]
     name = "force_and_spring" if law.spring and measured else "force"
-    return _of_rows(
+    return _part_of_rows(
         controller.name, rates, command, (name, FORCE), (law.commands, UNITS[law.commands])
     )
 
@@ -110,8 +110,10 @@ def _controller_part(controller: Controller, *, measured: bool) -> LinearPart:
 def _filter_part(low_pass: LowPass) -> LinearPart:
     """Return the filter of the force, from the force to what the laws get."""
     forms = coordinates(low_pass.order + 1)
-    felt, rates = low_pass.respond(forms[-1], forms[:-1])
-    return _of_rows("force_filter", rates, felt, ("force", FORCE), ("filtered_force", FORCE))
+    filtered, rates = low_pass.respond(forms[-1], forms[:-1])
+    return _part_of_rows(
+        "force_filter", rates, filtered, ("force", FORCE), ("filtered_force", FORCE)
+    )
 
 
 def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
@@ -122,13 +124,13 @@ def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearP
     if motion == "velocity":
         forms = coordinates(own + 1)
         force, rates = contact.react(forms[-1], forms[:-1])
-        return _of_rows(name, rates, force, ("velocity", "rad/s"), output)
+        return _part_of_rows(name, rates, force, ("velocity", "rad/s"), output)
     # From a position: only a spring, whose force does not depend on velocity.
     damped, _ = contact.react(coordinates(1)[0], [zero(1)] * own)
     if own > 1 or any(damped):
         return None
     force, _ = contact.react(zero(1), coordinates(1))
-    return _of_rows(name, [], force, ("position", "rad"), output)
+    return _part_of_rows(name, [], force, ("position", "rad"), output)
 
 
 def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
@@ -139,8 +141,12 @@ def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
         yield from (part for part in parts if part is not None)
 
 
-def _of_rows(
-    name: str, rates: Rows, output: Sequence[Fraction], given: tuple[str, str], out: tuple[str, str]
+def _part_of_rows(
+    name: str,
+    rates: Rows,
+    output: Sequence[Fraction],
+    inputs: tuple[str, str],
+    out: tuple[str, str],
 ) -> LinearPart:
     """Return the system of rates and an output, each of all states and of the input at the end."""
     size = len(output)
@@ -148,10 +154,10 @@ def _of_rows(
     for index, row in enumerate([*rates, output]):
         rows[index] = [float(entry) for entry in row]
     A, B, C, D = rows[:-1, :-1], rows[:-1, -1:], rows[-1:, :-1], rows[-1:, -1:]
-    return LinearPart(name, A, B, C, D, given, (out,))
+    return LinearPart(name, A, B, C, D, inputs, (out,))
 
 
-def _of_transfer(
+def _part_of_transfer(
     name: str,
     numerator: Sequence[Fraction],
     denominator: Sequence[Fraction],
@@ -193,9 +199,9 @@ def open_loops(
         for corner in () if given.environment is None else task.corners(given):
             opened, closed = axis.modes(law, corner.contact, corner.place)
             column, row = _factors(opened, closed)
-            cut = Loops.of_cut(axis.find_loop(law, corner.contact, corner.place), axis.period)
+            loops = Loops.from_cut(axis.find_loop(law, corner.contact, corner.place), axis.period)
             A, B, C = (np.array(M, dtype=np.float64) for M in (opened, [column], [row]))
-            found.append(OpenLoop(controller.name, corner.label, A, B.T, -C, cut))
+            found.append(OpenLoop(controller.name, corner.label, A, B.T, -C, loops))
     return tuple(found)
 
 

@@ -22,8 +22,8 @@ from nrs_design.models.contact import AbstractLinearLaw
 
 _OPENED, _CLOSED, _FREE = "opened", "closed", "free"  # Names of the polynomials of a mode
 # A virtual mass in kg m^2 that is next to none.
-_LEAST = 1e-12
-_KEPT = 512
+_SMALLEST = 1e-12
+_CACHE_SIZE = 512
 
 
 @dataclass(frozen=True)
@@ -80,19 +80,23 @@ class LoopFamily:
             lag = self.axis.low_pass.discretize(self.axis.period)
             p, q = float(lag.p), float(lag.q)
             factors += lag.order * [np.tile(((1 + p) * half / q, (1 - p) / q), (n, 1))]
-        above, below = factors[0] / b[:, None], np.ones(1)
+        numerator, denominator = factors[0] / b[:, None], np.ones(1)
         for factor in factors[1:]:
-            above = np.array([np.convolve(*rows) for rows in zip(above, factor, strict=True)])
-            below = np.convolve(below, (half, 1.0))
-        return above, np.tile(below, (n, 1))
+            numerator = np.array(
+                [np.convolve(*rows) for rows in zip(numerator, factor, strict=True)]
+            )
+            denominator = np.convolve(denominator, (half, 1.0))
+        return numerator, np.tile(denominator, (n, 1))
 
     def _loops(
-        self, cut: str, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float
+        self, cut_name: str, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float
     ) -> Loops:
         k = np.broadcast_to(np.asarray(stiffness, np.float64), Mt.shape)[:, None]
         denominator, numerator = (
-            held + k * grown
-            for held, grown in (self._polynomials(name, Mt, Bt) for name in (cut, f"from {cut}"))
+            fixed + k * slope
+            for fixed, slope in (
+                self._polynomials(name, Mt, Bt) for name in (cut_name, f"from {cut_name}")
+            )
         )
         period = self.axis.period
         return Loops(numerator, denominator, None if period is None else float(period))
@@ -116,7 +120,7 @@ class LoopFamily:
         if not Mt.any():
             return np.zeros_like(Bt), _single(1 / Bt)
         # Beside others, zero inertia counts as a tiny one.
-        Mt = np.maximum(Mt, _LEAST)
+        Mt = np.maximum(Mt, _SMALLEST)
         if method == "euler":
             return _single(1 - Bt * T / Mt), _single(T / Mt)
         return _single(np.exp(-Bt * T / Mt)), _single(-np.expm1(-Bt * T / Mt) / Bt)
@@ -131,21 +135,21 @@ class LoopFamily:
 
 
 # Controllers with the same contact share them, and so do choice and analysis of gains.
-@lru_cache(maxsize=_KEPT)
+@lru_cache(maxsize=_CACHE_SIZE)
 def _basis(family: LoopFamily, *, inert: bool) -> dict[str, FloatArray]:
     """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""
-    made = [
+    rows = [
         family.axis.admittances(
             family.contact.replace_stiffness(Fraction(k)), family.spring, family.place, inert=inert
         )
         for k in (1, 2)
     ]
     exact = {
-        name: np.array([[getattr(loop, name) for loop in three] for three in made], dtype=object)
+        name: np.array([[getattr(loop, name) for loop in three] for three in rows], dtype=object)
         for name in (_OPENED, _FREE, _CLOSED)
     }
-    for cut in (_OPENED, _FREE):
-        exact[f"from {cut}"] = exact[_CLOSED] - exact[cut]
+    for cut_name in (_OPENED, _FREE):
+        exact[f"from {cut_name}"] = exact[_CLOSED] - exact[cut_name]
     return {name: _affine(values) for name, values in exact.items()}
 
 

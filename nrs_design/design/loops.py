@@ -46,9 +46,12 @@ class Loops:
     period: float | None = None
 
     @classmethod
-    def of_cut(cls, cut: CutLoop, period: Fraction | None) -> Loops:
+    def from_cut(cls, cut_loop: CutLoop, period: Fraction | None) -> Loops:
         """Return the one loop of a mode that is cut; the period is in s."""
-        exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
+        exact = (
+            [c - o for c, o in zip(cut_loop.closed, cut_loop.opened, strict=True)],
+            cut_loop.opened,
+        )
         numerator, denominator = (np.array([p], dtype=np.float64) for p in exact)
         return cls(numerator, denominator, None if period is None else float(period))
 
@@ -85,10 +88,10 @@ class Loops:
         """Return the smallest factor above 1 on the loop gain that destabilizes."""
         _, imaginary = product_parts(self.numerator, self.denominator)
         omega = frequencies(imaginary)
-        last = _at_infinity(self.numerator, self.denominator)[:, None]
-        response = np.concatenate([self._at(omega).real, last], axis=1)
-        inside = (response < 0) & (response > -1)
-        gain = -1 / np.where(inside, response, np.nan)
+        last = _limit(self.numerator, self.denominator)[:, None]
+        response = np.concatenate([self._response(omega).real, last], axis=1)
+        is_inside = (response < 0) & (response > -1)
+        gain = -1 / np.where(is_inside, response, np.nan)
         return np.where(self.stable, _smallest(gain), 0.0)
 
     def phase_margin(self) -> FloatArray:
@@ -105,14 +108,14 @@ class Loops:
         dead = _smallest(phase % (2 * math.pi) / self._true(omega))
         if self.period is not None:
             dead = np.floor(dead / self.period) * self.period
-            last = np.abs(_at_infinity(self.numerator, self.denominator))
+            last = np.abs(_limit(self.numerator, self.denominator))
             dead = np.where(last < 1, dead, 0.0)
         return np.where(self.stable, dead, 0.0)
 
     def response(self, omega: FloatArray) -> ComplexArray:
         """Return every open loop at frequencies in rad/s, below half the sampling rate."""
-        seen = omega if self.period is None else 2 / self.period * np.tan(omega * self.period / 2)
-        return self._at(np.broadcast_to(seen, (len(self.numerator), len(omega))))
+        warped = omega if self.period is None else 2 / self.period * np.tan(omega * self.period / 2)
+        return self._response(np.broadcast_to(warped, (len(self.numerator), len(omega))))
 
     def _true(self, omega: FloatArray) -> FloatArray:
         """Return the frequencies of points on the imaginary axis."""
@@ -124,17 +127,19 @@ class Loops:
         """Return the phase over -180 degrees, and the frequency, of every gain crossover."""
         excess = squared(self.numerator) - squared(self.denominator)
         omega = frequencies(excess)
-        return np.angle(-self._at(omega)), omega
+        return np.angle(-self._response(omega)), omega
 
-    def _at(self, omega: FloatArray) -> ComplexArray:
+    def _response(self, omega: FloatArray) -> ComplexArray:
         return ratio(self.numerator, self.denominator, omega)
 
 
-def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+def _limit(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     """Return the ratios at infinite frequency, or at half the sampling rate."""
     first = (denominator != 0).argmax(axis=1)[:, None]
-    above, below = (np.take_along_axis(p, first, axis=1)[:, 0] for p in (numerator, denominator))
-    return above / below
+    dividend, divisor = (
+        np.take_along_axis(p, first, axis=1)[:, 0] for p in (numerator, denominator)
+    )
+    return dividend / divisor
 
 
 def gain_extremes(
@@ -155,7 +160,7 @@ def gain_extremes(
 def _peak(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     omega = stationary(numerator, denominator)
     magnitude = np.abs(ratio(numerator, denominator, omega))
-    last = np.abs(_at_infinity(numerator, denominator))
+    last = np.abs(_limit(numerator, denominator))
     return np.fmax(last, np.fmax.reduce(magnitude, axis=1, initial=0.0))
 
 
@@ -189,8 +194,8 @@ def hand_effort(loops: Loops, hand: AbstractLinearLaw, bandwidth: float) -> Floa
     return np.where(loops.stable, high, np.inf)
 
 
-def _cancelled(above: FloatArray, below: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _cancelled(numerator: FloatArray, denominator: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Leave out powers of s that are in both polynomials of every row."""
-    while not (above[:, -1].any() or below[:, -1].any()):
-        above, below = above[:, :-1], below[:, :-1]
-    return above, below
+    while not (numerator[:, -1].any() or denominator[:, -1].any()):
+        numerator, denominator = numerator[:, :-1], denominator[:, :-1]
+    return numerator, denominator

@@ -43,10 +43,10 @@ def computed(proved: Mapping[str, Sequence[str]]) -> Iterator[str]:
     for name, titles in proved.items():
         if titles:
             names.setdefault(", ".join(titles), []).append(name)
-    for said, own in names.items():
+    for statement, labels in names.items():
         yield (
             f"Proved in exact arithmetic for all values in the ranges, each of them constant, of "
-            f"{', '.join(own)}: {said}."
+            f"{', '.join(labels)}: {statement}."
         )
     yield f"{'All else: computed' if names else 'Computed'}{MEANING[-1].removeprefix('Computed')}"
 
@@ -89,13 +89,13 @@ class Measure:
             return "unbounded" if self.upper else "unlimited"
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
         context = Context(prec=_DIGITS, rounding=rounding)
-        scale, shown = self._shown
+        scale, unit_text = self._unit
         if isinstance(value, Fraction):
             exact = value * self.exact_scale
-            rounded = context.divide(Decimal(exact.numerator), Decimal(exact.denominator))
+            quotient = context.divide(Decimal(exact.numerator), Decimal(exact.denominator))
         else:
-            rounded = context.create_decimal(Decimal(value * scale))
-        return f"{rounded.normalize():f} {shown}".rstrip()
+            quotient = context.create_decimal(Decimal(value * scale))
+        return f"{quotient.normalize():f} {unit_text}".rstrip()
 
     @property
     def usual(self) -> str:
@@ -105,17 +105,17 @@ class Measure:
 
     def goal_text(self, value: float) -> str:
         """Write a goal, such as ``at most 2``."""
-        scale, unit_shown = self._shown
+        scale, unit_shown = self._unit
         shown = f"{value * scale:.6g} {unit_shown}".rstrip()
         return f"{'at most' if self.upper else 'at least'} {shown}"
 
     @property
     def exact_scale(self) -> Fraction:
         """Shown value over SI value, as the floating-point number that it is."""
-        return Fraction(self._shown[0])
+        return Fraction(self._unit[0])
 
     @property
-    def _shown(self) -> tuple[float, str]:
+    def _unit(self) -> tuple[float, str]:
         """Scale and unit on the current axis."""
         if not self.turning:
             return self.scale, self.unit
@@ -156,7 +156,7 @@ MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGI
 IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)
 HAND_MEASURES = (TRANSPARENCY, HAND_EFFORT)
 # Taken with the designed gains only, in the environment that they are designed for.
-AT_HOME = (IMPEDANCE_ERROR, FORCE_ERROR, *HAND_MEASURES)
+CONTACT_MEASURES = (IMPEDANCE_ERROR, FORCE_ERROR, *HAND_MEASURES)
 CREEP_MEASURES = (CREEP, CREEP_ANGLE)  # Only with known errors of the force signal
 # What rises or falls with each parameter throughout, as long as the loop is stable: the worst is at
 # a corner.

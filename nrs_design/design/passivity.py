@@ -25,7 +25,7 @@ from nrs_design.design.affine_family import (
     Polynomial,
     Response,
     corners_in,
-    motor_at,
+    find_motor,
     polynomial,
     real_product,
     squared_over,
@@ -71,7 +71,7 @@ def passive_band(
         return PassiveBand(ZERO, None)
     places = product(range(3), repeat=len(ranges))
     # A zero polynomial is passive, on the border.
-    grid = {at: P for at, P in zip(places, real_parts(axis, law, ranges), strict=True) if P}
+    grid = {place: P for place, P in zip(places, real_parts(axis, law, ranges), strict=True) if P}
     if any(P[0] <= 0 for P in grid.values()):
         return PassiveBand(ZERO, None)
     roots = {at: bracket for at, P in grid.items() if (bracket := first_root(P)) is not None}
@@ -87,15 +87,15 @@ def real_parts(
 
     They are the Bernstein coefficients over the box: at its corners, the values there.
     """
-    corners = corners_in(impedance_at(axis, law), ranges)
+    corners = corners_in(impedance_response(axis, law), ranges)
     return [P.right_shift(zeros_at_rest(P)) for P in squared_over(corners, real_product)]
 
 
-def impedance_at(axis: ContinuousAxis, law: CompliantLaw) -> Response:
+def impedance_response(axis: ContinuousAxis, law: CompliantLaw) -> Response:
     """Return D and N as a function of the parameters."""
 
     def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-        place, factor = motor_at(axis, values)
+        place, factor = find_motor(axis, values)
         free, damped = (
             factor * polynomial(*axis.find_loop(law, KelvinVoigt(ZERO, b), place).closed)
             for b in (ZERO, ONE)

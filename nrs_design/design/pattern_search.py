@@ -81,13 +81,13 @@ def refine(objective: Objective, start: Points) -> Points:
         if not len(rows):
             break
         moves = scale[rows, None, None] * offsets
-        across = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
+        second_moves = moves[..., 1] + start.slope[rows, None] * moves[..., 0]
         tried_u = _onto_square(u[rows, None] + moves[..., 0])
-        tried_v = _onto_square(v[rows, None] + across)
+        tried_v = _onto_square(v[rows, None] + second_moves)
         costs = objective(tried_u.ravel(), tried_v.ravel()).reshape(tried_u.shape)
         costs[:, 0] -= _LEAST_PROGRESS  # rounding noise must not count as progress
         best = np.argmin(costs, axis=1)
-        u[rows], v[rows] = (tried[np.arange(len(rows)), best] for tried in (tried_u, tried_v))
+        u[rows], v[rows] = (trial[np.arange(len(rows)), best] for trial in (tried_u, tried_v))
         scale[rows] = np.where(best == 0, scale[rows] / 4, np.minimum(1, 2 * scale[rows]))
     return replace(start, u=u, v=v)
 
@@ -108,19 +108,19 @@ def snap(
     edges = ((edge_u, v), (u, edge_v), (edge_u, edge_v))
     tried_u, tried_v = (np.concatenate(tried) for tried in zip((u, v), *edges, strict=True))
     costs, *trials = objective(tried_u, tried_v).reshape(4, len(u))
-    for (to_u, to_v), trial in zip(edges, trials, strict=True):
+    for (u_edge, v_edge), trial in zip(edges, trials, strict=True):
         gain = trial <= costs * (1 + 1e-12)
-        u, v = np.where(gain, to_u, u), np.where(gain, to_v, v)
+        u, v = np.where(gain, u_edge, u), np.where(gain, v_edge, v)
         costs = np.where(gain, trial, costs)
     return u, v, costs
 
 
-def lowest_minima(values: FloatArray, most: int) -> NDArray[np.intp]:
+def lowest_minima(values: FloatArray, count: int) -> NDArray[np.intp]:
     """Return the places of local minima, the lowest first, `most` at most."""
     padded = np.pad(values, 1, constant_values=np.inf)
     local = np.isfinite(values) & (values <= padded[:-2]) & (values <= padded[2:])
     places = np.flatnonzero(local)
-    return places[np.argsort(values[places], kind="stable")][:most]
+    return places[np.argsort(values[places], kind="stable")][:count]
 
 
 def _best_across(

@@ -39,8 +39,8 @@ from nrs_design.design.affine_family import (
     Squares,
     corners_in,
     everywhere,
+    find_motor,
     is_stable_over,
-    motor_at,
     parts_on_axis,
     polynomial,
     squared_magnitude,
@@ -60,7 +60,7 @@ _RANGES = 4  # Ranges at once
 _SLACK = (ZERO, Fraction(1, 1000), Fraction(1, 100))
 _DIGITS = 4
 # Pieces of the frequencies of a delay, and how far beyond the last crossover they go.
-_PIECES, _BEYOND = 6, Fraction(1_000_001, 1_000_000)
+_PIECES, _CLEARANCE = 6, Fraction(1_000_001, 1_000_000)
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,8 @@ class RangedLoop:
         """
         return _PROOFS[measure](self, value)
 
-    def _cut(
-        self, values: Mapping[str, Fraction], *, held: bool = False
+    def _cut_loop(
+        self, values: Mapping[str, Fraction], *, is_held: bool = False
     ) -> tuple[Polynomial, Polynomial]:
         """Return D and C, affine in each parameter.
 
@@ -104,13 +104,13 @@ class RangedLoop:
 
         `held`: D is that of nothing touched, for a hand that holds the robot.
         """
-        place, factor = motor_at(self.axis, values)
+        place, factor = find_motor(self.axis, values)
         contact = self._contact(values)
         factor *= rational(
             prod((contact[name] for name in self.environment.law.inverse), start=ONE)
         )
         loop = self.axis.find_loop(self.law, self.environment.evaluate(contact), place)
-        first = loop.free if held else loop.opened
+        first = loop.free if is_held else loop.opened
         return factor * polynomial(*first), factor * polynomial(*loop.closed)
 
     def _contact(self, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
@@ -120,7 +120,7 @@ class RangedLoop:
         """Tell whether ``D + f N`` keeps its roots on the left for f from 1 to a gain."""
 
         def poles(values: Mapping[str, Fraction]) -> tuple[Polynomial]:
-            opened, closed = self._cut(values)
+            opened, closed = self._cut_loop(values)
             return (opened + rational(values.get("factor", ONE)) * (closed - opened),)
 
         box = self.box | ({"factor": Interval(ONE, ONE, gain)} if gain > 1 else {})
@@ -137,10 +137,10 @@ class RangedLoop:
         # A spring is displayed without bound towards rest.
         if self.law.gains.get("Kt"):
             return False
-        below, band = self._over_admittance(), self.bandwidth
+        factor, band = self._over_admittance(), self.bandwidth
         return self._stays_below(
-            lambda d, c: ((c - d) * below, c), error * self.desired, band
-        ) and self._stays_below(lambda d, c: (c, (c - d) * below), error / self.desired, band)
+            lambda d, c: ((c - d) * factor, c), error * self.desired, band
+        ) and self._stays_below(lambda d, c: (c, (c - d) * factor), error / self.desired, band)
 
     def _over_admittance(self) -> Polynomial:
         """Return ``1/(H Y)`` of a law without a spring."""
@@ -158,12 +158,12 @@ class RangedLoop:
         if self.environment.law not in (Elastic, KelvinVoigt):
             return False
 
-        def felt(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-            opened, closed = self._cut(values, held=True)
+        def respond(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+            opened, closed = self._cut_loop(values, is_held=True)
             hand = self._contact(values)
             return opened * polynomial(hand.get("b", ZERO), hand["k"]), closed.left_shift(1)
 
-        return self._is_below(felt, effort, self.bandwidth)
+        return self._is_below(respond, effort, self.bandwidth)
 
     def _stays_below(
         self,
@@ -174,18 +174,22 @@ class RangedLoop:
         held: bool = False,
     ) -> bool:
         """Tell whether a quotient of D and C is nowhere above a limit, up to a frequency if any."""
-        return self._is_below(lambda values: response(*self._cut(values, held=held)), limit, band)
+        return self._is_below(
+            lambda values: response(*self._cut_loop(values, is_held=held)), limit, band
+        )
 
-    def _is_below(self, at: Response, limit: Fraction, band: Fraction | None) -> bool:
+    def _is_below(self, response: Response, limit: Fraction, band: Fraction | None) -> bool:
         pieces = everywhere() if band is None else (FrequencyPiece(ZERO, band**2),)
-        return Squares.of(at, self.box).stay_below(limit**2, pieces)
+        return Squares.of(response, self.box).stay_below(limit**2, pieces)
 
     def _has_phase(self, margin: Fraction) -> bool:
         t, pieces = _tangent(margin / 2), everywhere(Fraction(10))
-        return t is not None and self._nowhere_zero(Interval(ZERO, -t, t), _turned, pieces)
+        return t is not None and self._nowhere_zero(
+            Interval(ZERO, -t, t), _squared_magnitude, pieces
+        )
 
     def _has_delay(self, margin: Fraction) -> bool:
-        last = self._beyond_crossovers()
+        last = self._highest_crossover()
         if last is None:
             return False
         for low, high in pairwise(last * i / _PIECES for i in range(_PIECES + 1)):
@@ -202,26 +206,26 @@ class RangedLoop:
     ) -> bool:
         """Tell whether C and a share of ``N - D`` cancel nowhere on the axis."""
 
-        def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-            opened, closed = self._cut(values)
+        def respond(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
+            opened, closed = self._cut_loop(values)
             return closed, rational(values["share"]) * (closed - 2 * opened)
 
-        made = corners_in(at, {**self.box, "share": share})
-        return Squares(made, square=square).vanish_nowhere(pieces)
+        corners = corners_in(respond, {**self.box, "share": share})
+        return Squares(corners, square=square).vanish_nowhere(pieces)
 
-    def _beyond_crossovers(self) -> Fraction | None:
+    def _highest_crossover(self) -> Fraction | None:
         """Return a frequency from which on ``|N| < |D|``; None if none is shown."""
 
         def at(values: Mapping[str, Fraction]) -> tuple[Polynomial, Polynomial]:
-            opened, closed = self._cut(values)
+            opened, closed = self._cut_loop(values)
             return closed - opened, opened
 
         proposed = max(_last_crossover(*corner) for corner in corners_in(at, self.box))
         if not proposed:
             return None
-        last = Fraction(proposed) * _BEYOND
-        beyond = FrequencyPiece(ZERO, 1 / last**2, inverse=True)
-        found = Squares.of(at, self.box).bound(beyond, limit=ONE)
+        last = Fraction(proposed) * _CLEARANCE
+        piece = FrequencyPiece(ZERO, 1 / last**2, inverse=True)
+        found = Squares.of(at, self.box).bound(piece, limit=ONE)
         return last if found is not None and found < 1 else None
 
 
@@ -249,7 +253,7 @@ def ranged_loops(
     return loops if all(len(loop.box) <= _RANGES for loop in loops) else ()
 
 
-def with_proofs(
+def add_proofs(
     achieved: Sequence[Achieved],
     loops: Sequence[RangedLoop],
     home: str = "",
@@ -270,14 +274,17 @@ def with_proofs(
     ]
     if not proposed or not loops or not all(loop.stable for loop in loops):
         return tuple(achieved)
-    at_home = [
+    contact_loops = [
         replace(loop, desired=Fraction(desired), bandwidth=Fraction(bandwidth))
         for loop in loops
         if loop.environment.name == home
     ]
     return tuple(
         replace(
-            found, proved=_proved(found, at_home if found.measure in measures.AT_HOME else loops)
+            found,
+            proved=_proved(
+                found, contact_loops if found.measure in measures.CONTACT_MEASURES else loops
+            ),
         )
         if found in proposed
         else found
@@ -285,28 +292,30 @@ def with_proofs(
     )
 
 
-def _proved(found: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
+def _proved(measured: Achieved, loops: Sequence[RangedLoop]) -> Fraction | None:
     """Return the best value that is proved for all loops, of those that are proposed."""
-    proved = (v for v in _proposed(found) if all(loop.holds(found.measure, v) for loop in loops))
+    proved = (
+        v for v in _proposed(measured) if all(loop.holds(measured.measure, v) for loop in loops)
+    )
     return next(proved, None)
 
 
 def _proposed(found: Achieved) -> Iterator[Fraction]:
     """Yield values, the best first: the shown one, the goal, and slightly worse ones."""
-    wanted = found.goal
+    goal = found.goal
     # An infinite value at the corners gives no proposal.
     slacks = _SLACK if isfinite(found.value) else ()
     upper, scale = found.measure.upper, found.measure.exact_scale
     context = Context(prec=_DIGITS, rounding=ROUND_CEILING if upper else ROUND_FLOOR)
     for slack in slacks:
         worse = Fraction(found.value) * scale * (1 + slack if upper else 1 - slack)
-        shown = Fraction(context.create_decimal(Decimal(float(worse)))) / scale
-        if wanted is None or found.measure.violation(float(shown), wanted) <= 0:
-            yield shown
+        displayed = Fraction(context.create_decimal(Decimal(float(worse)))) / scale
+        if goal is None or found.measure.violation(float(displayed), goal) <= 0:
+            yield displayed
         elif not slack:
-            yield Fraction(wanted)
-    if wanted is not None:
-        yield Fraction(wanted)
+            yield Fraction(goal)
+    if goal is not None:
+        yield Fraction(goal)
 
 
 def _tangent(angle: Fraction) -> Fraction | None:
@@ -317,13 +326,13 @@ def _tangent(angle: Fraction) -> Fraction | None:
         return fraction_of(ball_around(angle).tan().upper())
 
 
-def _last_crossover(above: Polynomial, below: Polynomial) -> float:
-    excess = squared_magnitude(above) - squared_magnitude(below)
+def _last_crossover(numerator: Polynomial, denominator: Polynomial) -> float:
+    excess = squared_magnitude(numerator) - squared_magnitude(denominator)
     found = frequencies(np.array([[float(c) for c in reversed(excess.coeffs())]]))
     return float(np.nanmax(found, initial=0.0))
 
 
-def _turned(C: Polynomial, E: Polynomial) -> Polynomial:
+def _squared_magnitude(C: Polynomial, E: Polynomial) -> Polynomial:
     """Return ``|C(j omega) + j E(j omega)|^2`` in omega."""
     omega = polynomial(ONE, ZERO)
     (a, b), (c, d) = ([part(omega**2) for part in parts_on_axis(P)] for P in (C, E))

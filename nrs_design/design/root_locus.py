@@ -119,14 +119,14 @@ def _bandwidth(tf: TransferFunction) -> float:
     # By hand: python-control looks on a grid, and finds none where the magnitude rises first.
     rows = np.zeros((2, tf.order + 1))
     rows[0, tf.order + 1 - len(tf.numerator) :], rows[1] = tf.numerator, tf.denominator
-    above, below = squared(rows)
-    crossings = frequencies((above - 0.5 * static_gain(tf) ** 2 * below)[None])
+    numerator, denominator = squared(rows)
+    crossings = frequencies((numerator - 0.5 * static_gain(tf) ** 2 * denominator)[None])
     return float(np.fmin.reduce(crossings[0], initial=math.inf))
 
 
 # Time constants that a motion is followed for, and samples of each, or of each radian.
 _LONG, _FINE = 12.0, 16
-_MOST = 20_000
+_MAX_POINTS = 20_000
 
 
 def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) -> float:
@@ -139,7 +139,7 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
 
     parts = []
     for p in rates[rates.imag >= 0]:
-        count = int(min(_LONG * _FINE * (1 + abs(p.imag / p.real)), _MOST))
+        count = int(min(_LONG * _FINE * (1 + abs(p.imag / p.real)), _MAX_POINTS))
         t = np.linspace(0, _LONG / -p.real, count)
         parts.append((t, _march(expm(A * t[1]), x, count) @ c))
     times, first = np.unique(np.concatenate([t for t, _ in parts]), return_index=True)
@@ -153,8 +153,8 @@ def largest(A: FloatArray, c: FloatArray, x: FloatArray, rates: ComplexArray) ->
         left, right = times[peak - 1], times[peak + 1]
         if slope(left) > 0 > slope(right):
             # The value is flat there: half the digits of the time give all of its own.
-            at = brentq(slope, left, right, rtol=1e-9)
-            return max(float(values[peak]), float(c @ expm(A * at) @ x))
+            time = brentq(slope, left, right, rtol=1e-9)
+            return max(float(values[peak]), float(c @ expm(A * time) @ x))
     return float(values[peak])
 
 

@@ -104,14 +104,14 @@ def hurwitz(coefficients: ArrayLike) -> BoolArray:
 def _routh(rows: FloatArray) -> BoolArray:
     """Run Routh's array on rows whose first entry is not zero."""
     columns = list((rows / rows[:, :1]).T)
-    above, below = columns[0::2], columns[1::2]
+    numerators, denominators = columns[0::2], columns[1::2]
     stable = np.ones(len(rows), dtype=np.bool_)
     for _ in range(len(columns) - 1):
         # NaN fails this comparison: a row that overflowed must not pass for stable.
-        stable &= below[0] > 0
-        ratio = above[0] / np.where(stable, below[0], 1.0)
-        pairs = zip_longest(above[1:], below[1:], fillvalue=0.0)
-        above, below = below, [upper - ratio * lower for upper, lower in pairs]
+        stable &= denominators[0] > 0
+        ratio = numerators[0] / np.where(stable, denominators[0], 1.0)
+        pairs = zip_longest(numerators[1:], denominators[1:], fillvalue=0.0)
+        numerators, denominators = denominators, [upper - ratio * lower for upper, lower in pairs]
     return stable
 
 
@@ -161,9 +161,9 @@ def product_parts(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]
 def _even_odd(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Split ``p(j omega) = E(x) + j omega O(x)``."""
     ascending = polynomials[:, ::-1]
-    even, odd = ascending[:, 0::2], ascending[:, 1::2]
-    signs = (-1.0) ** np.arange(even.shape[1])
-    return (even * signs)[:, ::-1], (odd * signs[: odd.shape[1]])[:, ::-1]
+    even_terms, odd = ascending[:, 0::2], ascending[:, 1::2]
+    signs = (-1.0) ** np.arange(even_terms.shape[1])
+    return (even_terms * signs)[:, ::-1], (odd * signs[: odd.shape[1]])[:, ::-1]
 
 
 def _sum(a: FloatArray, b: FloatArray) -> FloatArray:

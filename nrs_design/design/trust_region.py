@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 REGION, SMALLEST_REGION = 0.25, 1e-3  # How far a coordinate moves at first, and at least
 PENALTY = 10.0  # Added cost of a constraint violated by one
 # A step is kept if it brings this share of what was predicted; from the other on, the region grows.
-KEPT, GOOD = 0.1, 0.6
+ACCEPTED, GOOD = 0.1, 0.6
 # Least improvement.
 CHEAPER = 2e-5
 MOST_EVALUATIONS = 24
@@ -65,38 +65,43 @@ def minimize_in_trust_region(problem: ConstrainedProblem, start: Evaluation) -> 
 
     Slopes are found again where they were wrong.
     """
-    here, slopes, count, region = start, start.jacobian(), 1, REGION
+    current, slopes, count, region = start, start.jacobian(), 1, REGION
     while count < MOST_EVALUATIONS and region >= SMALLEST_REGION:
-        there = _cheapest(problem, here, slopes, region)
-        reached = here.values + slopes @ (there - here.x)
-        merit = _merit(problem, here.x, here.values)
-        predicted = merit - _merit(problem, there, reached)
+        trial = _cheapest(problem, current, slopes, region)
+        predicted_values = current.values + slopes @ (trial - current.x)
+        merit = _merit(problem, current.x, current.values)
+        predicted = merit - _merit(problem, trial, predicted_values)
         if predicted < CHEAPER:
             break
-        found, count = problem.evaluate(there, reached), count + 1
-        gained = merit - _merit(problem, there, found.values)
-        if gained < KEPT * predicted:
-            region = min(region, float(np.abs(there - here.x).max())) / 2
+        found, count = problem.evaluate(trial, predicted_values), count + 1
+        gained = merit - _merit(problem, trial, found.values)
+        if gained < ACCEPTED * predicted:
+            region = min(region, float(np.abs(trial - current.x).max())) / 2
             continue
-        if (np.abs(found.values - reached) > WRONG * np.abs(reached - here.values)).any():
+        if (
+            np.abs(found.values - predicted_values)
+            > WRONG * np.abs(predicted_values - current.values)
+        ).any():
             slopes = found.jacobian()
-        here, region = found, 2 * region if gained >= GOOD * predicted else region
-    return ConstrainedOptimum(here, slopes, problem.cost(here.x), count)
+        current, region = found, 2 * region if gained >= GOOD * predicted else region
+    return ConstrainedOptimum(current, slopes, problem.cost(current.x), count)
 
 
 def _merit(problem: ConstrainedProblem, x: Array, values: Array) -> float:
     return problem.cost(x) + problem.penalty(values) + problem.penalty(problem.quick(x))
 
 
-def _cheapest(problem: ConstrainedProblem, here: Evaluation, slopes: Array, region: float) -> Array:
+def _cheapest(
+    problem: ConstrainedProblem, current: Evaluation, slopes: Array, region: float
+) -> Array:
     """Minimize the cost where a linear model holds as well as it can, within the region."""
-    low = np.maximum(problem.low, here.x - region)
-    high = np.minimum(problem.high, here.x + region)
+    low = np.maximum(problem.low, current.x - region)
+    high = np.minimum(problem.high, current.x + region)
 
     def met(x: Array) -> Array:
-        return np.concatenate([here.values + slopes @ (x - here.x), problem.quick(x)])
+        return np.concatenate([current.values + slopes @ (x - current.x), problem.quick(x)])
 
-    return cheapest(problem.cost, met, low, high, here.x)
+    return cheapest(problem.cost, met, low, high, current.x)
 
 
 def cheapest(

@@ -64,4 +64,4 @@ def _over(loop, Mt, Bt, numerator, omega):
 
 
 def _free(loop, Mt, Bt):
-    return np.polyadd(np.convolve(loop.forward[1], trim((Mt, Bt))), loop.drawn)
+    return np.polyadd(np.convolve(loop.forward[1], trim((Mt, Bt))), loop.spring_part)

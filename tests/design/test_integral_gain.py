@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from nrs_design.design.analysis import analyze_design, design_controllers
 from nrs_design.design.force_loop import Approach, peak_force
-from nrs_design.design.laws.pi_force import integral_gain, with_integral
+from nrs_design.design.laws.pi_force import add_integral, integral_gain
 from nrs_design.errors import DesignError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
@@ -38,7 +38,7 @@ def test_what_is_too_fast_is_refused(settling):
 
 
 def test_the_open_loop_with_an_integral():
-    forward = with_integral(LOOP, 25.0)
+    forward = add_integral(LOOP, 25.0)
     s = 3 + 4j
     wanted = (s + 25) / s * np.polyval(LOOP.numerator, s) / np.polyval(LOOP.denominator, s)
     found = np.polyval(forward.numerator, s) / np.polyval(forward.denominator, s)

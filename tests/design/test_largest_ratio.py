@@ -43,13 +43,13 @@ def test_a_resonance():
 
 def test_a_pole_in_the_box_has_no_bound():
     below = bernstein(fractions("1/4", -1, 1), Fraction(0), ONE)
-    assert bound_ratio([ONE] * 3, below, (3,), most=2000) is None
+    assert bound_ratio([ONE] * 3, below, (3,), max_pieces=2000) is None
     assert bound_ratio([ONE] * 3, below, (3,), Fraction(100)) is None
 
 
 def test_what_is_not_shown_in_time_is_not_claimed():
     """With no work, the coefficients of the whole box are all there is: 1/2 for 1/4."""
-    found = bound_ratio(PARABOLA, [ONE] * 3, (3,), Fraction(1, 4), most=-1)
+    found = bound_ratio(PARABOLA, [ONE] * 3, (3,), Fraction(1, 4), max_pieces=-1)
     assert found == Fraction(1, 2)
 
 

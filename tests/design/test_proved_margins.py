@@ -27,7 +27,7 @@ from nrs_design.design.measures import (
     TRANSPARENCY,
     GoalStanding,
 )
-from nrs_design.design.proved_margins import RangedLoop, ranged_loops, with_proofs
+from nrs_design.design.proved_margins import RangedLoop, add_proofs, ranged_loops
 from nrs_design.models.contact import Elastic, Hand, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment
 from nrs_design.pipeline.design import run_analysis
@@ -148,8 +148,8 @@ def test_what_is_not_stable_has_no_margins():
     ranged = loop("0.01", "1.04", contact("40", "80"))
     assert not ranged.stable
     found = (Achieved(SENSITIVITY_PEAK, 3.0, "soft"),)
-    assert with_proofs(found, (ranged,), "soft", 2.15, 12.0) == found
-    assert with_proofs(found, (), "soft", 2.15, 12.0) == found
+    assert add_proofs(found, (ranged,), "soft", 2.15, 12.0) == found
+    assert add_proofs(found, (), "soft", 2.15, 12.0) == found
     assert not ranged.holds(GAIN_MARGIN, Fraction(1, 2))
 
 
@@ -161,7 +161,7 @@ def test_angles_and_delays_beyond_a_half_turn_are_refused():
 
 def test_a_value_that_is_shown_is_the_one_that_is_proved():
     ranged = loop("0.01", "1.04", contact(*SOFT))
-    peak, free, creep = with_proofs(
+    peak, free, creep = add_proofs(
         (
             Achieved(SENSITIVITY_PEAK, 3.752975, "soft", goal=3.75299),
             Achieved(GAIN_MARGIN, math.inf, "soft"),

@@ -44,12 +44,12 @@ class ForceAnalysis(AbstractControllerAnalysis):
     forward: TransferFunction
 
 
-def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
+def proportional_gain(task: Task, spec: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
     """Return the given Kp, or the Kp with the damping ratio of the spec."""
-    if given.proportional_gain is not None:
-        return round_float32(given.proportional_gain.exact)
-    stiffness = task.stiffness(given)
-    gain = design_force_gain(task.followed(given), stiffness, float(given.damping_ratio or 0))
+    if spec.proportional_gain is not None:
+        return round_float32(spec.proportional_gain.exact)
+    stiffness = task.stiffness(spec)
+    gain = design_force_gain(task.followed(spec), stiffness, float(spec.damping_ratio or 0))
     return round_float32(round_significant(gain, task.digits))
 
 

@@ -30,7 +30,7 @@ from nrs_design.design.laws.law import (
 )
 from nrs_design.design.measures import CREEP_MEASURES, HAND_MEASURES, IMPEDANCE_MEASURES, Measure
 from nrs_design.design.passivity import PassiveBand, passive_band
-from nrs_design.design.proved_margins import ranged_loops, with_proofs
+from nrs_design.design.proved_margins import add_proofs, ranged_loops
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import ContinuousAxis
 from nrs_design.models.axis import unit
@@ -68,7 +68,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with their proofs over the ranges."""
         home, loop = self.given.environment, self.requirement
-        return with_proofs(achieved, self.loops, home, loop.desired, loop.bandwidth)
+        return add_proofs(achieved, self.loops, home, loop.desired, loop.bandwidth)
 
     @property
     def limit_at_arm(self) -> float | None:
@@ -98,19 +98,19 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         yield from doubt_bounds(self.name, self.given, self.optimum)
 
 
-def choose(task: Task, given: ImpedanceControllerSpec) -> Choice:
+def choose(task: Task, spec: ImpedanceControllerSpec) -> Choice:
     """Return the gains that the spec gives, or the best that its bounds and goals allow."""
-    if given.Mt.fixed and given.Bt.fixed:
+    if spec.Mt.fixed and spec.Bt.fixed:
         # The certificate says whether these gains are stable.
-        Mt, Bt = (round_float32(gain.min.exact) for gain in (given.Mt, given.Bt))
-        return Admittance(Mt, Bt, _spring(given)), None
-    requirement = requirement_of(task, given)
-    problem = impedance_problem(task, given, requirement)
+        Mt, Bt = (round_float32(gain.min.exact) for gain in (spec.Mt, spec.Bt))
+        return Admittance(Mt, Bt, _spring(spec)), None
+    requirement = requirement_of(task, spec)
+    problem = impedance_problem(task, spec, requirement)
     optimum = optimize_with_goals(problem, requirement)
-    Mt, Bt = (_shipped(getattr(optimum, g), getattr(given, g), task.digits) for g in ("Mt", "Bt"))
+    Mt, Bt = (_shipped(getattr(optimum, g), getattr(spec, g), task.digits) for g in ("Mt", "Bt"))
     if not meets(requirement, float(Mt), float(Bt)):
-        Mt, Bt = _rounded_within(problem, requirement, optimum, given, task.digits)
-    return Admittance(Mt, Bt, _spring(given)), optimum
+        Mt, Bt = _rounded_within(problem, requirement, optimum, spec, task.digits)
+    return Admittance(Mt, Bt, _spring(spec)), optimum
 
 
 def analyze(
@@ -131,7 +131,7 @@ def analyze(
     axis = task.axis if isinstance(task.axis, ContinuousAxis) else None
     # Gains that the spec gives are their own optimum.
     ends = given.Mt.min.si, given.Bt.min.si
-    own = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)))
+    optimum = ImpedanceOptimum(*ends, float(impedance_cost(problem, *ends)))
     law, contacts, moving = controller.law, task.contacts(given), _moving(task)
     measures = (
         *_measures(task),
@@ -142,7 +142,7 @@ def analyze(
         achieved=requirement.achieved(measures, Mt, Bt),
         given=given,
         problem=problem,
-        optimum=controller.optimum or own,
+        optimum=controller.optimum or optimum,
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
@@ -171,11 +171,11 @@ def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
     for corner in requirement.nominal if requirement.axis is not None else ():
         if requirement.loops(corner, np.array([Mt]), np.array([Bt])).stable[0]:
             continue
-        late = "".join(f", {text}" for text in corner.place.texts)
+        latencies = "".join(f", {text}" for text in corner.place.texts)
         raise DesignError(
             f"the loop with Mt = {Mt:.6g} {unit('kg m^2')} and Bt = {Bt:.6g} "
             f"{unit('N m s/rad')} is unstable at {corner.contact.stiffness:.6g} "
-            f"{unit('N m/rad')}{late}",
+            f"{unit('N m/rad')}{latencies}",
             remedy=f"{_stable_below(requirement, Mt, Bt)}; raise Bt or lower Mt",
             at=("Bt",),
         )
@@ -185,8 +185,8 @@ def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
     """Say up to which stiffness nominal contact is stable at every age of the force sample."""
     limit = min(requirement.family(c).stiffness_limit(Mt, Bt) for c in requirement.nominal)
     (motor,) = {corner.place.motor for corner in requirement.nominal}
-    ranged = any(corner.place.motor != motor for corner in requirement.corners)
-    nominal = " with the nominal motor" if ranged else ""
+    has_ranges = any(corner.place.motor != motor for corner in requirement.corners)
+    nominal = " with the nominal motor" if has_ranges else ""
     if not limit:
         return f"it is unstable{nominal} however soft the contact is"
     return f"it is stable{nominal} below {lower(Fraction(limit), 6)} {unit('N m/rad')}"
@@ -262,8 +262,8 @@ def requirement_of(task: Task, given: ImpedanceControllerSpec) -> Requirement:
 
 def _home_names(given: ImpedanceControllerSpec) -> tuple[str, ...]:
     """Return the environment of the design, and its combinations with others."""
-    at_once = (c for c in given.contacts if given.environment in names_in(c))
-    return given.environment, *contact_names(tuple(at_once))
+    joint_contacts = (c for c in given.contacts if given.environment in names_in(c))
+    return given.environment, *contact_names(tuple(joint_contacts))
 
 
 def _measures(task: Task) -> tuple[Measure, ...]:
@@ -280,7 +280,7 @@ def _rounded_within(
 ) -> tuple[Fraction, Fraction]:
     """Return the cheapest rounded gains near an optimum at the edge of what its goals allow."""
     Mts, Bts = (
-        [float(_shipped(near, bounds, digits)) for near in neighbors(value, digits)]
+        [float(_shipped(neighbor, bounds, digits)) for neighbor in neighbors(value, digits)]
         for value, bounds in ((optimum.Mt, given.Mt), (optimum.Bt, given.Bt))
     )
     pair = best_rounding(problem, requirement, (Mts, Bts))
@@ -300,5 +300,5 @@ def _spring(given: ImpedanceControllerSpec) -> Fraction:
 
 def _shipped(value: float, bounds: GainSpec, digits: int) -> Fraction:
     """Round a gain, keep it within its bounds, and round it to single precision."""
-    rounded = round_significant(value, digits)
-    return round_float32(min(max(rounded, bounds.min.exact), bounds.max.exact))
+    shipped = round_significant(value, digits)
+    return round_float32(min(max(shipped, bounds.min.exact), bounds.max.exact))

@@ -19,7 +19,7 @@ from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values, is_unusual
 from nrs_design.design.goals import Achieved, ContactCorner, corners_of
 from nrs_design.design.measures import Measure
-from nrs_design.design.proved_margins import RangedLoop, with_proofs
+from nrs_design.design.proved_margins import RangedLoop, add_proofs
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.loop.cut_loop import AbstractAxis, Place, axis_of
@@ -56,12 +56,12 @@ class Task:
         return axis_of(self.spec, self.plant, self.pd, self.sensor)
 
     def corners(
-        self, given: ControllerSpec, spring: Fraction = Fraction(0)
+        self, spec: ControllerSpec, spring: Fraction = Fraction(0)
     ) -> tuple[ContactCorner, ...]:
         """Return where a controller is measured."""
-        assert given.environment is not None  # A controller with contact has one.
+        assert spec.environment is not None  # A controller with contact has one.
         places = (Place(self.plant.actuator),) if self.axis is None else self.axis.places
-        return corners_of(self.contacts(given), given.environment, places, spring)
+        return corners_of(self.contacts(spec), spec.environment, places, spring)
 
     @property
     def sensor(self) -> Sensor:
@@ -118,9 +118,9 @@ class AbstractControllerAnalysis(ABC):
     @cached_property
     def judged(self) -> tuple[Achieved, ...]:
         """Worst values with their proofs over the ranges."""
-        asked = {found.measure: found for found in self.judged_goals}
+        goals = {found.measure: found for found in self.judged_goals}
         others = iter(self.prove([found for found in self.achieved if found.goal is None]))
-        return tuple(asked.get(found.measure) or next(others) for found in self.achieved)
+        return tuple(goals.get(found.measure) or next(others) for found in self.achieved)
 
     @cached_property
     def judged_goals(self) -> tuple[Achieved, ...]:
@@ -129,7 +129,7 @@ class AbstractControllerAnalysis(ABC):
 
     def prove(self, achieved: Sequence[Achieved]) -> tuple[Achieved, ...]:
         """Return worst values with their proofs over the ranges."""
-        return with_proofs(achieved, self.loops)
+        return add_proofs(achieved, self.loops)
 
     @property
     def proved_titles(self) -> tuple[str, ...]:
@@ -183,8 +183,8 @@ def naming(controller: str) -> Iterator[None]:
         yield
     except DesignError as error:
         message = f"controller {controller}: {error.message}"
-        at = ("controllers", controller, *error.at)
-        raise DesignError(message, remedy=error.remedy, at=at) from error
+        place = ("controllers", controller, *error.at)
+        raise DesignError(message, remedy=error.remedy, at=place) from error
 
 
 def goals_of(

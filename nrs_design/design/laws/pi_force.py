@@ -20,10 +20,10 @@ from nrs_design.errors import DesignError
 from nrs_design.spec.controllers import IntegralControllerSpec
 
 _SETTLED = 4.0  # Time constants until 2 % are left, as in thesis 4.14
-_NEAR = 1e-6  # Largest relative rounding error of a pole
+_POLE_TOLERANCE = 1e-6  # Largest relative rounding error of a pole
 
 
-def with_integral(motion: TransferFunction, zero: float) -> TransferFunction:
+def add_integral(motion: TransferFunction, zero: float) -> TransferFunction:
     """Return ``(s + zero)/s G(s)``; the zero is ``Ki/Kp`` in 1/s."""
     numerator = np.polymul(motion.numerator, (1.0, zero))
     return TransferFunction(tuple(map(float, numerator)), (*motion.denominator, 0.0))
@@ -41,8 +41,8 @@ def integral_gain(
     G = np.polyval(motion.numerator, pole) / np.polyval(motion.denominator, pole)
     Ki = float(-pole * (gain + 1 / (stiffness * G))) if G else 0.0
     if Ki > 0:
-        response = force_loop_response(with_integral(motion, Ki / gain), stiffness, gain)
-        if response.poles[0].real <= pole * (1 - _NEAR):
+        response = force_loop_response(add_integral(motion, Ki / gain), stiffness, gain)
+        if response.poles[0].real <= pole * (1 - _POLE_TOLERANCE):
             return Ki
     raise DesignError(
         f"no integral gain settles the force within {settling_time:.6g} s at this proportional "
@@ -52,12 +52,12 @@ def integral_gain(
     )
 
 
-def choose(task: Task, given: IntegralControllerSpec) -> Choice:
+def choose(task: Task, spec: IntegralControllerSpec) -> Choice:
     """Return the gains that the spec gives, or those with its damping ratio and settling time."""
-    Kp = proportional_gain(task, given)
-    if given.settling_time is None:
-        assert given.integral_gain is not None
-        return IntegralForce(Kp, round_float32(given.integral_gain.exact)), None
+    Kp = proportional_gain(task, spec)
+    if spec.settling_time is None:
+        assert spec.integral_gain is not None
+        return IntegralForce(Kp, round_float32(spec.integral_gain.exact)), None
     if Kp == 0:
         raise DesignError(
             "the damping ratio asks for no proportional gain, and a PI controller has one",
@@ -65,7 +65,7 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
             at=("damping_ratio",),
         )
     gain = integral_gain(
-        task.followed(given), task.stiffness(given), float(Kp), given.settling_time.si
+        task.followed(spec), task.stiffness(spec), float(Kp), spec.settling_time.si
     )
     return IntegralForce(Kp, round_float32(round_significant(gain, task.digits))), None
 
@@ -76,7 +76,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     limits = task.spec.limits
     # Position command and integral keep their values: the command does not step.
     approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)
-    forward = with_integral(task.followed(given), Ki / Kp)
+    forward = add_integral(task.followed(given), Ki / Kp)
     return analyze_approach(task, given, controller, forward, approach, MARGINS)
 
 

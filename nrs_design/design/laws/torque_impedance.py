@@ -47,16 +47,18 @@ class TorqueAnalysis(AbstractControllerAnalysis):
         return f"{'yes' if self.margin > 0 else 'no'}, {lower(self.margin)}"
 
 
-def analyze(task: Task, given: TorqueImpedanceSpec, controller: Controller) -> TorqueAnalysis:
+def analyze(task: Task, spec: TorqueImpedanceSpec, controller: Controller) -> TorqueAnalysis:
     """Return gains and passivity of a controller."""
     drive, sampling = task.plant.drive, task.spec.sampling
     assert drive is not None, "such a controller has a robot that takes torques"
     assert sampling is not None, "such a robot is modelled in the sampled loop"
     T = sampling.period.exact
-    held = controller.law.discretize(T, sampling.admittance)
-    Kp, B = held.numbers["Kp"], held.numbers.get("Kd_over_T", Fraction(0)) * T
-    plain = not any(task.spec.late) and sampling.jitter is None and FORCE_GAIN not in held.numbers
-    margin = passivity_margin(drive.ranges["B"].low, Kp, B, T) if plain else None
+    sampled = controller.law.discretize(T, sampling.admittance)
+    Kp, B = sampled.numbers["Kp"], sampled.numbers.get("Kd_over_T", Fraction(0)) * T
+    is_plain = (
+        not any(task.spec.late) and sampling.jitter is None and FORCE_GAIN not in sampled.numbers
+    )
+    margin = passivity_margin(drive.ranges["B"].low, Kp, B, T) if is_plain else None
     return TorqueAnalysis(controller.name, (), float(Kp), float(B), margin)
 
 

@@ -103,7 +103,7 @@ def gate(
 
         content = read_lock(lock)
         with progress("gate") as step:
-            outcome = run_locked(specs, content, lock, step, named=paths)
+            outcome = run_locked(specs, content, lock, step, paths=paths)
     else:
         from nrs_design.gating.lock import read_lock_if_any
         from nrs_design.gating.renew import check_folder, recorded_in, write_lock

@@ -97,7 +97,7 @@ def sweep(
     from nrs_design.cli.sweep_point import Job
     from nrs_design.output import SWEEP, check_place, write_output
     from nrs_design.pipeline.sweep_grid import read_grid
-    from nrs_design.pipeline.sweep_table import chosen, flat
+    from nrs_design.pipeline.sweep_table import choose_facts, flat
 
     if table is not None:
         check_place(table, SWEEP)
@@ -106,7 +106,7 @@ def sweep(
     _check_options(job)
     points = _points(job, jobs)
     found = _Swept(job, points, [dict(flat(point.result or {})) for point in points])
-    names = chosen(found.rows, fact_names) if fact_names else None
+    names = choose_facts(found.rows, fact_names) if fact_names else None
     if table is not None:
         write_output(table, found.table(), replaces=SWEEP)
         note(f"table written to {table}")

@@ -41,7 +41,7 @@ from nrs_design.spec.load import is_there
 from nrs_design.spec.spec_weakening import Change, find_changes
 from nrs_design.spec.task_space import file_of
 
-_GONE = "this spec of the base is gone: what it asked for is no longer shown"
+_REMOVED = "this spec of the base is gone: what it asked for is no longer shown"
 # Verdicts, from the one that shows most.
 _VERDICTS = ("proved", "inconclusive", "refuted")
 
@@ -54,7 +54,7 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
     if os.path.realpath(base) == os.path.realpath("."):
         raise NrsDesignError("is this folder itself", path=base, remedy="name another checkout")
     relative = [Path(os.path.relpath(path)) for path in paths]
-    here = os.path.realpath(".")
+    folder = os.path.realpath(".")
     for path in relative:
         if path.parts[:1] == ("..",) or path.is_absolute():
             raise NrsDesignError(
@@ -63,7 +63,7 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
                 remedy="run the command where the paths begin in both folders",
             )
         # A link to the base would compare the base with itself.
-        if os.path.commonpath([here, os.path.realpath(path)]) != here:
+        if os.path.commonpath([folder, os.path.realpath(path)]) != folder:
             raise NrsDesignError(
                 "is a link that leads out of the working folder",
                 path=path,
@@ -76,36 +76,39 @@ def compare_with_base(
     outcome: GateOutcome, paths: Sequence[Path], base: Path, lock: Path
 ) -> GateOutcome:
     """Add a broken obligation for each weaker requirement, and list all other changes."""
-    there = _specs_if_any(base_paths(paths, base))
+    base_specs = _specs_if_any(base_paths(paths, base))
     # By path from the root of the base.
     folder = Path(os.path.relpath(lock)).parent
     locked = read_lock_if_any(base / os.path.relpath(lock)).specs
     entries = {os.path.normpath(folder / entry.path): entry for entry in locked}
     here = {Path(os.path.relpath(spec.path)): spec for spec in outcome.specs}
     found: dict[Path, list[Change]] = {}
-    gone: list[SpecOutcome] = []
-    for path in there:
+    removed: list[SpecOutcome] = []
+    for path in base_specs:
         name = Path(os.path.relpath(path, base))
-        now = here.get(name) or _moved(path, there, base, outcome)
+        now = here.get(name) or _find_moved(path, base_specs, base, outcome)
         if now is None:
-            lost = Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE)
-            gone.append(SpecOutcome(name, (lost,)))
+            missed = Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _REMOVED)
+            removed.append(SpecOutcome(name, (missed,)))
             continue
         entry = entries.get(os.path.normpath(name))
         if os.path.lexists(now.path) or is_there(now.path):
-            found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now, (base / lock).parent)]
+            found[now.path] = [
+                *_compare_spec(path, now),
+                *_compare_lock(entry, now, (base / lock).parent),
+            ]
         else:
             # The spec is gone, but the lock file here still names it.
-            found[now.path] = [Change((), _GONE, True)]
-    specs = [_with(spec, found.get(spec.path, ())) for spec in outcome.specs]
-    weaker = sum(change.weaker for changes in found.values() for change in changes) + len(gone)
+            found[now.path] = [Change((), _REMOVED, True)]
+    specs = [_add_changes(spec, found.get(spec.path, ())) for spec in outcome.specs]
+    weaker = sum(change.weaker for changes in found.values() for change in changes) + len(removed)
     others = tuple(
         _caution(spec, change)
         for spec in outcome.specs
         for change in found.get(spec.path, ())
         if not change.weaker
     )
-    return replace(outcome, specs=(*specs, *gone), changes=BaseChanges(base, weaker, others))
+    return replace(outcome, specs=(*specs, *removed), changes=BaseChanges(base, weaker, others))
 
 
 def _specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
@@ -121,11 +124,11 @@ def _specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def _moved(
-    path: Path, there: Sequence[Path], base: Path, outcome: GateOutcome
+def _find_moved(
+    path: Path, base_specs: Sequence[Path], base: Path, outcome: GateOutcome
 ) -> SpecOutcome | None:
     """Return the spec here that has the name of one of the base, but a new path."""
-    known = {os.path.normpath(os.path.relpath(other, base)) for other in there}
+    known = {os.path.normpath(os.path.relpath(other, base)) for other in base_specs}
     name = _name_of(path)
     for spec in outcome.specs:
         new = os.path.normpath(os.path.relpath(spec.path)) not in known
@@ -141,7 +144,7 @@ def _name_of(path: Path) -> str | None:
         return None
 
 
-def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
+def _compare_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
     """Yield the differences between the spec of the base and the spec here."""
     try:
         after = read_spec(now.path)
@@ -156,7 +159,7 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
     yield from find_changes(before.spec, after.spec)
 
 
-def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterator[Change]:
+def _compare_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterator[Change]:
     """Yield a lower verdict or a proof of less than the base has locked, and another version."""
     if entry is None:
         if now.certifiable:
@@ -165,13 +168,13 @@ def _of_lock(entry: LockedSpec | None, now: SpecOutcome, folder: Path) -> Iterat
     if now.verdict is None or _VERDICTS.index(now.verdict) > _VERDICTS.index(entry.verdict):
         yield Change((), f"{entry.verdict} before, {now.verdict or 'without a verdict'} now", True)
     elif entry.certificate is not None and now.certificate is not None:
-        yield from _of_proof(folder / entry.certificate.file, now.certificate)
+        yield from _compare_proof(folder / entry.certificate.file, now.certificate)
     if entry.version != __version__:
         message = f"designed by nrs-design {entry.version} before, {__version__} now"
         yield Change((), message, False)
 
 
-def _of_proof(before: Path, after: Path) -> Iterator[Change]:
+def _compare_proof(before: Path, after: Path) -> Iterator[Change]:
     """Yield the differences between two certificates; a lost statement is weaker.
 
     That of the base is only read: whoever made it has checked it.
@@ -181,13 +184,15 @@ def _of_proof(before: Path, after: Path) -> Iterator[Change]:
         message = f"the certificate of the base cannot be compared: {base.fault}"
         yield Change((), message, True)
         return
-    was, now = (dict(_shown(one.certificate)) for one in (base, judged(partial(_read, after))))
-    for what in dict.fromkeys((*was, *now)):
-        number, text = was.get(what, (None, "not shown"))
-        other, said = now.get(what, (None, "not shown"))
+    was, now = (
+        dict(_list_claims(one.certificate)) for one in (base, judged(partial(_read, after)))
+    )
+    for claim in dict.fromkeys((*was, *now)):
+        number, text = was.get(claim, (None, "not shown"))
+        other, said = now.get(claim, (None, "not shown"))
         if text != said:
             weaker = number is not None and (other is None or other < number)
-            yield Change((), f"{what} {text} before, {said} now", weaker)
+            yield Change((), f"{claim} {text} before, {said} now", weaker)
 
 
 def _read(file: Path) -> Verification:
@@ -195,7 +200,7 @@ def _read(file: Path) -> Verification:
     return Verification(read_certificate(document, held_system(document)), None)
 
 
-def _shown(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fraction, str]]]:
+def _list_claims(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fraction, str]]]:
     """Yield name, number and text of each proved fact; a larger number is a stronger fact."""
     if certificate is None:
         return
@@ -207,28 +212,28 @@ def _shown(certificate: Certificate | None) -> Iterator[tuple[str, tuple[Fractio
             yield "certified rate", (seconds, lower(seconds))
         elif rate is not None:
             yield "certified rate per step", (-rate, upper(rate))
-        for what, covers in (
+        for what, is_covered in (
             ("loss of contact", evidence.covers_lost_contact),
             ("rounding", evidence.covers_rounding),
         ):
-            if covers:
+            if is_covered:
                 yield what, (Fraction(1), "covered")
     for item in certificate.statements:
         if (bound := item.bound(system)) is not None:
-            under = ", ".join(channel.name for channel in bound.channels)
-            rounded = ", with rounding" * item.covers_rounding
-            what = f"bound on {bound.output.name} under {under}{rounded}"
+            channels = ", ".join(channel.name for channel in bound.channels)
+            rounding = ", with rounding" * item.covers_rounding
+            what = f"bound on {bound.output.name} under {channels}{rounding}"
             yield what, (-bound.level, upper(bound.level))
         if (size := item.start_size) is not None:
             yield "decay although signals saturate, from", (size, lower(size))
 
 
-def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
+def _add_changes(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
     """Return a spec with an obligation for each thing that is weaker, at its place."""
     broken = []
     for change in (change for change in changes if change.weaker):
-        at, where = _caution(spec, change), ".".join(map(str, change.key_path)) or "spec"
-        place = (at.message, at.line, at.column)
+        caution, where = _caution(spec, change), ".".join(map(str, change.key_path)) or "spec"
+        place = (caution.message, caution.line, caution.column)
         broken.append(Obligation(NOT_WEAKER, spec.path, where, Status.MISSED, *place))
     return replace(spec, obligations=(*spec.obligations, *broken))
 

@@ -64,8 +64,10 @@ class Examiner:
         self, rule: rules.Rule, subject: str, status: Status, message: str, keys: Keys
     ) -> Obligation:
         """Return an obligation about the value at some keys of this spec; one line."""
-        at = self.loaded.place(*keys)
-        return Obligation(rule, self.loaded.path, subject, status, message, at.line, at.column)
+        place = self.loaded.place(*keys)
+        return Obligation(
+            rule, self.loaded.path, subject, status, message, place.line, place.column
+        )
 
     def keys_of_mode(self, name: str) -> Keys:
         """Return the keys of a given mode, or of the controller of an assembled mode."""
@@ -76,8 +78,8 @@ class Examiner:
 
     def keys_of_goal(self, controller: str, key: str) -> Keys:
         """Return the keys of a goal of a controller, or of the same goal of the whole spec."""
-        own: Keys = ("controllers", controller, "goals", key)
-        return ("goals", key) if node_at(self.loaded.root, own) is None else own
+        keys: Keys = ("controllers", controller, "goals", key)
+        return ("goals", key) if node_at(self.loaded.root, keys) is None else keys
 
     def caution(self, message: str, *keys: str | int) -> Caution:
         """Return a caution about something in this spec, by the keys that lead there."""
@@ -133,8 +135,8 @@ class Examiner:
             status = Status.INCONCLUSIVE
             message = f"neither a proof nor a refutation was found ({searched})"
             if (growing := refutes_in_contact(system, statements)) is not None:
-                where = refuted_in(system, statements)
-                message = f"refuted {where}, which decides nothing where contact may be lost: "
+                place = refuted_in(system, statements)
+                message = f"refuted {place}, which decides nothing where contact may be lost: "
                 message += growing.claim(system)
         else:
             status = Status.PROVED if proved else Status.REFUTED
@@ -179,23 +181,23 @@ class Examiner:
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""
-        said = "holds, checked exactly" if fault is None else f"is rejected: {fault}"
-        status, message = _met(fault is None), f"{file.as_posix()} {said}"
+        outcome = "holds, checked exactly" if fault is None else f"is rejected: {fault}"
+        status, message = _status(fault is None), f"{file.as_posix()} {outcome}"
         return self.obligation(rules.CERTIFICATE_HOLDS, "certificate", status, message, ("name",))
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
-        message = f"design goal: {error.message}{self._in_contact} (floating point, not a proof)"
+        message = f"design goal: {error.message}{self._contact_text} (floating point, not a proof)"
         place = ("controllers",)
         return self.obligation(rules.STIFFNESS_RANGE, "controllers", self._missed, message, place)
 
     @property
     def _missed(self) -> Status:
         """Status of a loop that is unstable in kept contact; open where contact may be lost."""
-        return Status.INCONCLUSIVE if self._in_contact else Status.MISSED
+        return Status.INCONCLUSIVE if self._contact_text else Status.MISSED
 
     @property
-    def _in_contact(self) -> str:
+    def _contact_text(self) -> str:
         spec = self.loaded.spec
         losable = spec.kind == "interaction-design" and spec.contact == "losable"
         return ", in kept contact" if losable else ""
@@ -206,17 +208,19 @@ class Examiner:
             highest, limit = item.highest_stiffness, item.lowest_limit
             if isnan(limit):
                 continue
-            reached = highest < limit
-            held = ", all parameters in proportion" if item.problem.loop.contact.has_memory else ""
-            held += "" if reached else self._in_contact
-            verb = "stays below" if reached else "reaches"
+            is_below = highest < limit
+            proportion = (
+                ", all parameters in proportion" if item.problem.loop.contact.has_memory else ""
+            )
+            proportion += "" if is_below else self._contact_text
+            verb = "stays below" if is_below else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
                 f"{unit('N*m/rad')}, {verb} the limit {limit:.6g} {unit('N*m/rad')} of controller "
-                f"{item.name}{held}, "
+                f"{item.name}{proportion}, "
                 "at the worst corner of the other ranges (floating point, not a proof)"
             )
-            status, place = Status.MET if reached else self._missed, ("controllers", item.name)
+            status, place = Status.MET if is_below else self._missed, ("controllers", item.name)
             yield self.obligation(rules.STIFFNESS_RANGE, item.name, status, message, place)
 
     def goals(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
@@ -239,9 +243,9 @@ class Examiner:
         """Yield NRS108 for every goal to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):
             # The text of the goal `largest` is complete without a number.
-            wanted = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"
+            goal_text = "" if goal.wanted == "largest" else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
-            subject, said = f"system: {goal.key}", goal.said + wanted
+            subject, said = f"system: {goal.key}", goal.said + goal_text
             yield self.obligation(rules.CERTIFIED_GOAL, subject, status, said, goal.place)
 
     def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
@@ -251,7 +255,7 @@ class Examiner:
         for quantity, limit in scenario.limits.items():
             metric, unit = _PEAKS[quantity]
             peak = float(simulated.metrics[metric])
-            met = run.stopped is None and peak <= limit
+            is_met = run.stopped is None and peak <= limit
             message = (
                 f"simulated: the largest {quantity} of scenario {scenario.name} is "
                 f"{upper(Fraction(peak))} {unit}, its limit {limit:.6g} {unit}{early} "
@@ -259,7 +263,7 @@ class Examiner:
             )
             place = ("scenarios", name, "limits", quantity)
             subject = f"{scenario.name}: {quantity}"
-            yield self.obligation(rules.SCENARIO_LIMIT, subject, _met(met), message, place)
+            yield self.obligation(rules.SCENARIO_LIMIT, subject, _status(is_met), message, place)
 
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
@@ -279,7 +283,7 @@ class Examiner:
             accepted, key = item.accept_doubt is not None, "doubts"
             if accepted:
                 key, message = "accept_doubt", f"{message}; accepted because: {item.accept_doubt}"
-            yield self.obligation(rules.NOT_DOUBTED, at[-1], _met(accepted), message, (*at, key))
+            yield self.obligation(rules.NOT_DOUBTED, at[-1], _status(accepted), message, (*at, key))
 
     def contact(self, certificate: Certificate | None) -> Iterator[Caution]:
         """Yield that contact must be kept, where the spec does not say whether it is."""
@@ -327,8 +331,8 @@ def _open_growth(system: SwitchedSystem, mode: str) -> str:
     return "for which the environment would have to pull"
 
 
-def _met(reached: bool) -> Status:
-    return Status.MET if reached else Status.MISSED
+def _status(is_met: bool) -> Status:
+    return Status.MET if is_met else Status.MISSED
 
 
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:

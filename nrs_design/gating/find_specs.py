@@ -95,12 +95,12 @@ def _reads_like_a_spec(file: Path) -> bool:
 
 
 def _specs_below(root: Path) -> Iterator[Path]:
-    inside = os.path.realpath(root)
+    real_root = os.path.realpath(root)
     for folder, _, files in _walk(root):
         for name in files:
             if name.lower().endswith(SUFFIXES):
                 spec = Path(folder, name)
-                if os.path.commonpath([inside, os.path.realpath(spec)]) != inside:
+                if os.path.commonpath([real_root, os.path.realpath(spec)]) != real_root:
                     raise SpecError(
                         "is a link that leads out of the folder",
                         path=spec,

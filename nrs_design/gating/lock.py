@@ -171,9 +171,9 @@ def read_lock(file: Path) -> Lock:
         raise refused(f"cannot be read ({error.strerror})") from error
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(map(str, first["loc"])) or "the file"
+        place = ".".join(map(str, first["loc"])) or "the file"
         message = first["msg"].removeprefix("Value error, ")
-        raise refused(f"not a lock file: {where}: {message}") from error
+        raise refused(f"not a lock file: {place}: {message}") from error
     except (ValueError, RecursionError) as error:
         raise refused(f"not a lock file: {error}") from error
 

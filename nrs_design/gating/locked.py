@@ -41,7 +41,7 @@ PRUNE = "run nrs-design gate with --prune"
 _AS_LOCKED = "(as locked; not computed again)"
 
 # Requirement on a design: id of the rule, and subject.
-Asked = tuple[str, str]
+GoalKey = tuple[str, str]
 # A design without margins has this in the place of all that is asked of controllers.
 _NO_MARGINS = (STIFFNESS_RANGE.id, "controllers")
 
@@ -52,7 +52,7 @@ def run_locked(
     file: Path,
     progress: Progress = silent,
     *,
-    named: Sequence[Path] = (),
+    paths: Sequence[Path] = (),
 ) -> GateOutcome:
     """Re-check every spec against the lock file, exactly and without any solver.
 
@@ -70,7 +70,7 @@ def run_locked(
         path = file.parent / name
         if not is_there(path):
             outcomes.append(_absent(path, f"is in {file.name}, but no longer exists ({PRUNE})"))
-        elif _is_below(path, named):
+        elif _is_below(path, paths):
             message = f"is in {file.name}, but was not examined: it lies behind a link to a folder "
             outcomes.append(_absent(path, message + "or in a hidden folder (name it, or move it)"))
         else:
@@ -106,8 +106,8 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
     if (changed := _find_change(loaded, entry)) is not None:
         return _missed(examiner, f"{changed} ({RENEW})")
     if lacks := find_missing(loaded.spec, {(g.rule, g.subject): g.status for g in entry.goals}):
-        listed = "; ".join(f"{rule} of {subject}" for rule, subject in lacks)
-        return _missed(examiner, f"{file.name} does not say how this ended: {listed} ({RENEW})")
+        lacking = "; ".join(f"{rule} of {subject}" for rule, subject in lacks)
+        return _missed(examiner, f"{file.name} does not say how this ended: {lacking} ({RENEW})")
     if entry.certificate is None:
         return _inconclusive(examiner, entry, file)
     place = Path(os.path.normpath(file.parent / entry.certificate.file))
@@ -139,14 +139,14 @@ def _confirmed(
     found = (
         *examiner.stability(certificate.system, certificate.statements, "as locked"),
         examiner.certificate(place, None),
-        *_others(examiner, certificate, entry, file),
+        *_other_goals(examiner, certificate, entry, file),
     )
-    of_proof = (*examiner.contact(certificate), *examiner.limits(certificate))
-    cautions = (*of_proof, *examiner.cautions(None), *_remark(examiner, entry))
+    proof_items = (*examiner.contact(certificate), *examiner.limits(certificate))
+    cautions = (*proof_items, *examiner.cautions(None), *_remark(examiner, entry))
     return examiner.outcome(certificate, place, certificate, found, cautions)
 
 
-def _others(
+def _other_goals(
     examiner: Examiner, certificate: Certificate | None, entry: LockedSpec, file: Path
 ) -> tuple[Obligation, ...]:
     """Return the obligations beside stability."""
@@ -161,9 +161,9 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
         # A run is named by its scenario: `NAME: torque`.
         run = goal.rule == SCENARIO_LIMIT.id
         place = "scenarios", goal.subject.partition(":")[0], "limits"
-        said, ended = f"{goal.message} {_AS_LOCKED}", Status(goal.status)
-        at = place if run else ("controllers", goal.subject)
-        yield examiner.obligation(RULES[goal.rule], goal.subject, ended, said, at)
+        message, ended = f"{goal.message} {_AS_LOCKED}", Status(goal.status)
+        keys = place if run else ("controllers", goal.subject)
+        yield examiner.obligation(RULES[goal.rule], goal.subject, ended, message, keys)
 
 
 def _remark(examiner: Examiner, entry: LockedSpec) -> Iterator[Caution]:
@@ -186,7 +186,7 @@ def _find_difference(certificate: Certificate, entry: LockedSpec) -> str | None:
 
 def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutcome:
     message = f"neither a proof nor a refutation is locked in {file.name}"
-    others = _others(examiner, None, entry, file)
+    others = _other_goals(examiner, None, entry, file)
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(examiner.system(Status.INCONCLUSIVE, message), *others),
@@ -202,34 +202,36 @@ def _missed(examiner: Examiner, message: str) -> SpecOutcome:
 
 
 def _absent(path: Path, message: str) -> SpecOutcome:
-    shown = Path(os.path.relpath(path))
-    obligation = Obligation(LOCKED, shown, "lock", Status.MISSED, f"this spec {message}")
-    return SpecOutcome(shown, (obligation,))
+    relative = Path(os.path.relpath(path))
+    obligation = Obligation(LOCKED, relative, "lock", Status.MISSED, f"this spec {message}")
+    return SpecOutcome(relative, (obligation,))
 
 
-def find_missing(spec: Spec, locked: Mapping[Asked, str]) -> tuple[Asked, ...]:
+def find_missing(spec: Spec, locked: Mapping[GoalKey, str]) -> tuple[GoalKey, ...]:
     """Return the requirements of a spec that the lock, with a status for each, lacks."""
     if spec.kind != "interaction-design":
         return ()
     # A design without margins, or a failed run, stands for all its goals, and is never met.
     unjudged = {one for one, status in locked.items() if status != "met"}
-    asked = () if _NO_MARGINS in unjudged else tuple(_of_controllers(spec))
-    limits = (one for one in _of_scenarios(spec) if (one[0], one[1].split(":")[0]) not in unjudged)
-    return tuple(one for one in (*asked, *limits) if one not in locked)
+    goal_keys = () if _NO_MARGINS in unjudged else tuple(_controller_goals(spec))
+    limits = (
+        one for one in _scenario_goals(spec) if (one[0], one[1].split(":")[0]) not in unjudged
+    )
+    return tuple(one for one in (*goal_keys, *limits) if one not in locked)
 
 
-def _of_scenarios(spec: InteractionDesignSpec) -> Iterator[Asked]:
+def _scenario_goals(spec: InteractionDesignSpec) -> Iterator[GoalKey]:
     for name, scenario in spec.scenarios.items():
         for quantity in () if scenario.limits is None else scenario.limits.named:
             yield SCENARIO_LIMIT.id, f"{name}: {quantity}"
 
 
-def _of_controllers(spec: InteractionDesignSpec) -> Iterator[Asked]:
+def _controller_goals(spec: InteractionDesignSpec) -> Iterator[GoalKey]:
     sampling = spec.sampling
     # A force that is sampled more often than the motion loop has no such limit.
-    limited = sampling is None or sampling.outer >= sampling.period.exact
+    is_limited = sampling is None or sampling.outer >= sampling.period.exact
     for name, controller in spec.controllers.items():
-        if controller.limits_stiffness and limited:
+        if controller.limits_stiffness and is_limited:
             yield STIFFNESS_RANGE.id, name
         given = (spec.goals, getattr(controller, "goals", None))
         keys = {key for goals in given if goals is not None for key, _ in goals.given()}

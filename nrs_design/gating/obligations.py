@@ -25,7 +25,7 @@ def is_utf8(path: PurePath) -> bool:
     return True
 
 
-def from_here(path: Path) -> str:
+def relative_path(path: Path) -> str:
     """Return a path relative to the working folder, with forward slashes.
 
     CI systems run a step in the root of the repository and resolve names from there.
@@ -152,8 +152,8 @@ class GateOutcome:
     @property
     def cautions(self) -> tuple[Caution, ...]:
         """What is doubtful, worst first, else in the order of the specs."""
-        every = (item for spec in self.specs for item in spec.cautions)
-        return tuple(sorted(every, key=lambda item: -item.beyond))
+        cautions = (item for spec in self.specs for item in spec.cautions)
+        return tuple(sorted(cautions, key=lambda item: -item.beyond))
 
     @property
     def broken(self) -> tuple[Obligation, ...]:
@@ -205,15 +205,15 @@ def failed(path: Path, error: Exception, sha256: str | None = None) -> SpecOutco
 
 def count_by_verdict(specs: Iterable[SpecOutcome]) -> dict[str, int]:
     """Count specs by verdict, or by the reason for none."""
-    none = {True: "without verdict", False: "with nothing to certify"}
-    return Counter(spec.verdict or none[spec.certifiable] for spec in specs)
+    empty = {True: "without verdict", False: "with nothing to certify"}
+    return Counter(spec.verdict or empty[spec.certifiable] for spec in specs)
 
 
-def _add_count(first: Obligation, others: int) -> Obligation:
+def _add_count(first: Obligation, count: int) -> Obligation:
     """Return an obligation whose message counts equal failures of other modes."""
-    if not others:
+    if not count:
         return first
-    modes = counted(others, "more mode")
+    modes = counted(count, "more mode")
     return replace(first, message=f"{first.message}; likewise {modes} of its controller (--json)")
 
 

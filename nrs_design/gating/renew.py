@@ -57,29 +57,33 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         # The entry of an unchanged spec still holds if the spec has no verdict now.
         still = {(p, s.sha256) for p, s in examined.items() if s.verdict is None}
         old = [e for e in locked if e.path not in examined or (e.path, e.sha256) in still]
-        gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
-        written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
+        removed = {entry.path for entry in old if not is_there(file.parent / entry.path)}
+        certificate_files = {
+            entry.certificate.file for entry in fresh if entry.certificate is not None
+        }
         # A spec that was renamed: its certificate is now found under the new name of the file.
         dropped = {
-            e.path for e in old if e.certificate is not None and e.certificate.file in written
+            e.path
+            for e in old
+            if e.certificate is not None and e.certificate.file in certificate_files
         }
         if prune:
-            dropped |= gone
-        kept = [entry for entry in old if entry.path not in dropped]
-        if kept or fresh or file.exists():
-            entries = sorted([*kept, *fresh], key=lambda entry: entry.path)
+            dropped |= removed
+        old_entries = [entry for entry in old if entry.path not in dropped]
+        if old_entries or fresh or file.exists():
+            entries = sorted([*old_entries, *fresh], key=lambda entry: entry.path)
             if entries != locked or not file.exists():
                 write_output(file, dump_lock(Lock(specs=entries)), replaces=LOCK)
                 outcome = outcome.with_note(f"{file} written")
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
-    names = {entry.path for entry in kept}
+    names = {entry.path for entry in old_entries}
     missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]
     unchanged = {str(path) for path in pending if is_there(path)}.difference(missing)
     for text, paths in (
         (f"not in {file}, for want of a verdict", missing),
         (f"without a verdict now, but unchanged, so still in {file}", unchanged),
         (f"removed from {file}", dropped),
-        (f"no longer there, but in {file} (--prune removes it)", gone - dropped),
+        (f"no longer there, but in {file} (--prune removes it)", removed - dropped),
     ):
         if paths:
             outcome = outcome.with_note(f"{text}: {', '.join(sorted(paths))}")
@@ -102,7 +106,7 @@ def _check_kept(spec: SpecOutcome) -> None:
 
 
 # Ratio of an unbounded value to its limit.
-_MOST = 1e6
+_LARGEST_RATIO = 1e6
 # A lock file proves nothing: a status without a certificate is locked as met or missed.
 _LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
 
@@ -163,5 +167,5 @@ def _remark(cautions: Sequence[Caution]) -> LockedRemark | None:
     worst = max(cautions, key=attrgetter("beyond"), default=None)
     if worst is None or not worst.beyond:
         return None
-    beyond = float(f"{min(worst.beyond, _MOST):.3g}")
-    return LockedRemark(message=worst.message, at=[*map(str, worst.at)], beyond=beyond)
+    excess = float(f"{min(worst.beyond, _LARGEST_RATIO):.3g}")
+    return LockedRemark(message=worst.message, at=[*map(str, worst.at)], beyond=excess)

@@ -55,10 +55,10 @@ class Files:
         """Return the certificate file of the spec of that name."""
         return self.folder / f"{name}.cert.json"
 
-    def recorded_for(self, loaded: LoadedSpec) -> Recorded:
+    def find_record(self, loaded: LoadedSpec) -> Recorded:
         """Return the certificate that is locked for a spec; else where it would be."""
-        beside = Recorded(self.certificate(loaded.spec.name))
-        return self.locked.get(Path(os.path.abspath(loaded.path)), beside)
+        record = Recorded(self.certificate(loaded.spec.name))
+        return self.locked.get(Path(os.path.abspath(loaded.path)), record)
 
     def report(self, name: str) -> Path:
         """Return the report file of the spec of that name."""
@@ -68,10 +68,10 @@ class Files:
         """Refuse to write files of that name where they are those of another spec."""
         check_owner(spec, name, self.folder)
         file = self.certificate(name)
-        place, own = os.path.realpath(file), os.path.realpath(spec)
-        for owner, kept in self.locked.items():
-            locked = kept.file.name == file.name and os.path.realpath(kept.file) == place
-            if locked and file_of(owner).is_file() and os.path.realpath(owner) != own:
+        place, spec_path = os.path.realpath(file), os.path.realpath(spec)
+        for owner, record in self.locked.items():
+            locked = record.file.name == file.name and os.path.realpath(record.file) == place
+            if locked and file_of(owner).is_file() and os.path.realpath(owner) != spec_path:
                 message = f"is locked for {os.path.relpath(owner)}"
                 raise OutputError(message, path=file, remedy=REMEDY)
 
@@ -144,12 +144,12 @@ def _read(path: Path) -> LoadedSpec | SpecOutcome:
 
 def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
     """Return another spec of the same name, for those that have one."""
-    named: defaultdict[str, list[Path]] = defaultdict(list)
+    paths_by_name: defaultdict[str, list[Path]] = defaultdict(list)
     for loaded in specs:
         # Some file systems do not tell capitals from small letters.
-        named[loaded.spec.name.casefold()].append(loaded.path)
-    shared = (paths for paths in named.values() if len(paths) > 1)
-    return {path: paths[paths[0] == path] for paths in shared for path in paths}
+        paths_by_name[loaded.spec.name.casefold()].append(loaded.path)
+    duplicates = (paths for paths in paths_by_name.values() if len(paths) > 1)
+    return {path: paths[paths[0] == path] for paths in duplicates for path in paths}
 
 
 def _examine(
@@ -165,14 +165,14 @@ def _examine(
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
     # Options that limit the search request a search.
-    wanted = overrides not in (None, Overrides())
-    kept = None if wanted else run_kept(loaded, files.recorded_for(loaded), progress)
+    has_overrides = overrides not in (None, Overrides())
+    kept = None if has_overrides else run_kept(loaded, files.find_record(loaded), progress)
     result = kept or run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner(loaded)
     blocked = find_blocked(result, limits, progress)
-    tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
-    searched = "; ".join((*tried, *(blocked_lines(blocked, loaded.path) if blocked else ())))
+    attempts = [f"{a.step}: {a.outcome}" for a in certification.attempts]
+    searched = "; ".join((*attempts, *(blocked_lines(blocked, loaded.path) if blocked else ())))
     obligations = examiner.stability(certification.system, certification.statements, searched)
     file = None if certificate is None else place
     if certificate is not None:
@@ -185,8 +185,8 @@ def _examine(
         obligations += (examiner.certificate(place, fault),)
     simulated = tuple(_judge_scenarios(result, examiner, progress))
     analysis, goals = _judge_margins(result, examiner, progress)
-    shown = (*examiner.contact(certificate), *examiner.limits(certificate))
-    cautions = (*shown, *examiner.cautions(analysis))
+    items = (*examiner.contact(certificate), *examiner.limits(certificate))
+    cautions = (*items, *examiner.cautions(analysis))
     obligations += (
         *examiner.certified_goals(certificate),
         *goals,
@@ -221,8 +221,8 @@ def _judge_margins(
         analysis = run_judgement(result.designed)
     except DesignError as error:
         return None, (examiner.no_margins(error),)
-    judged = (examiner.stiffness_ranges, examiner.goals)
-    return analysis, tuple(item for judge in judged for item in judge(analysis))
+    examinations = (examiner.stiffness_ranges, examiner.goals)
+    return analysis, tuple(item for judge in examinations for item in judge(analysis))
 
 
 def _judge_scenarios(
@@ -231,12 +231,12 @@ def _judge_scenarios(
     """Simulate the scenarios that have limits, and yield how they end."""
     if result.designed is None:
         return
-    limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
-    if not limited:
+    names = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
+    if not names:
         return
     from nrs_design.pipeline.scenarios import Runs, run_scenarios
 
-    for name in limited:
+    for name in names:
         progress(f"scenario {name}")
         try:
             (simulated,) = run_scenarios(result.designed, Runs((name,)))

@@ -41,7 +41,7 @@ FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
 MOST_LINES = 24
-SHOWN = 3  # Printed lines, beside the first and the last
+PRINTED_LINES = 3  # Printed lines, beside the first and the last
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +121,8 @@ class _Search:
         mild = [line for line in lines if line.weakest.word != WITHOUT]
         drastic = [line for line in lines if line.weakest.word == WITHOUT]
         gains = self._calmer(GAINS * self._budget)
-        start, rest = self._spent, self._budget - self._spent
-        proved = gains + self._single(mild, start + FIND * rest, start + STRETCH * rest)
+        start, budget = self._spent, self._budget - self._spent
+        proved = gains + self._single(mild, start + FIND * budget, start + STRETCH * budget)
         proved += self._single(drastic, self._budget, self._budget)
         unbounded = bool(self._result.certification.system.channels)
         return Blocked(proved, len(lines), len(found), unbounded, self._spent)
@@ -133,10 +133,10 @@ class _Search:
         The calmest are tried first, and may take half of the work: if they do not help, none do.
         """
         ways = [calmer(self._result.loaded, *factors) for factors in CALMER]
-        if not ways[-1] or not self._decide(_least(ways[-1]), until / 2):
+        if not ways[-1] or not self._decide(_weakest_edits(ways[-1]), until / 2):
             return ()
         for left, lines in zip(range(len(ways), 0, -1), ways, strict=True):
-            if lines and self._decide(_least(lines), (until - self._spent) / left):
+            if lines and self._decide(_weakest_edits(lines), (until - self._spent) / left):
                 break
         return (self._proved([(line, line.weakest, 0) for line in lines]),)
 
@@ -238,7 +238,7 @@ class _Search:
         )
 
     def _blocking(self, line: SpecRelaxation, form: RelaxationSteps, step: int) -> Blocking:
-        says = form.value_at(step)
+        value = form.value_at(step)
         key = line.at[-1]
         return Blocking(
             self._result.loaded.place(*line.at),
@@ -246,16 +246,16 @@ class _Search:
             form.requested,
             form.label_at(step),
             form.word,
-            "" if says is None else f"{key}: {in_one_line(says)}",
+            "" if value is None else f"{key}: {in_one_line(value)}",
             line.changes_model,
             tuple(map(dotted, identified_above(self._result.loaded.root, line.at))),
         )
 
-    def _name(self, at: Keys) -> str:
+    def _name(self, keys: Keys) -> str:
         """Return the name of an item of a list, which has no key."""
-        node = node_at(self._result.loaded.root, at) if isinstance(at[-1], int) else None
-        said = None if node is None else to_data(node)
-        name = said.get("name") if isinstance(said, dict) else said
+        node = node_at(self._result.loaded.root, keys) if isinstance(keys[-1], int) else None
+        value = None if node is None else to_data(node)
+        name = value.get("name") if isinstance(value, dict) else value
         return f" ({name})" if isinstance(name, str) else ""
 
 
@@ -263,28 +263,28 @@ def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
     return respecified(loaded, with_edits(loaded.root, edits))
 
 
-def _least(lines: Sequence[SpecRelaxation]) -> list[Edit]:
+def _weakest_edits(lines: Sequence[SpecRelaxation]) -> list[Edit]:
     return [line.edit(line.weakest, 0) for line in lines]
 
 
 def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     """Write the changes that give a proof, in at most five lines."""
-    some = counted(blocked.tried, "line")
-    some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
+    line_count = counted(blocked.tried, "line")
+    line_count += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:
         spent = f"{blocked.work:.2g} of work"
         verb = "was" if blocked.tried == 1 else "were"
-        return (f"no change found that is proved: {some} of the spec {verb} tried ({spent})",)
+        return (f"no change found that is proved: {line_count} of the spec {verb} tried ({spent})",)
     head = "proved with any one of these changes; a larger --budget may reach further"
     head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
-    lines = [_said(item, path) for item in blocked.proved]
-    more = len(lines) - SHOWN
-    if more > 1:
-        lines = [*lines[:SHOWN], f"and {more} more (--json)"]
+    lines = [_describe(item, path) for item in blocked.proved]
+    hidden = len(lines) - PRINTED_LINES
+    if hidden > 1:
+        lines = [*lines[:PRINTED_LINES], f"and {hidden} more (--json)"]
     return (head, *lines)
 
 
-def _said(item: Proved, path: Path) -> str:
+def _describe(item: Proved, path: Path) -> str:
     said = " together with ".join(
         f"{path}:{line.place.line}: {line_text(line)}" for line in item.lines
     )
@@ -296,8 +296,8 @@ def _said(item: Proved, path: Path) -> str:
 
 def line_text(line: Blocking) -> str:
     """Write the proved part of a line, and its replacement."""
-    beside = "".join(f", without {name}" for name in line.left_out)
+    removals = "".join(f", without {name}" for name in line.left_out)
     if line.word == WITHOUT:
-        return f"without {line.line}{beside}"
+        return f"without {line.line}{removals}"
     said = f"{line.line}: {line.word} {line.proved}, where the spec asks {line.asked}"
-    return f"{said} (write `{line.write}`{beside})"
+    return f"{said} (write `{line.write}`{removals})"

@@ -44,8 +44,8 @@ class Result:
         """Every statement with what it shows, in a few words."""
         from nrs_design.certificates.brief import brief
 
-        touched = () if self.designed is None else self.designed.spec.environments.values()
-        given = (environment.lever_arm for environment in touched)
+        environments = () if self.designed is None else self.designed.spec.environments.values()
+        given = (environment.lever_arm for environment in environments)
         # The force is largest at the shortest arm.
         arm = min((length.exact for length in given if length is not None), default=None)
         system, statements = self.certification.system, self.certification.statements
@@ -72,15 +72,15 @@ def search_limits(
     spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True
 ) -> Limits:
     """Return the limits of the search, from defaults, spec and command."""
-    limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
-    declared = None if spec.kind == "robot" else spec.certification
-    for said in (declared, asked):
-        if said is not None and said.max_degree is not None:
-            limits = replace(limits, max_degree=said.max_degree)
-        if said is not None and said.budget is not None:
-            limits = replace(limits, budget=float(said.budget))
-    if asked.memory is not None:
-        limits = replace(limits, memory=asked.memory * GIGABYTE)
+    limits, options = Limits(optimize_rate=optimize_rate), overrides or Overrides()
+    section = None if spec.kind == "robot" else spec.certification
+    for source in (section, options):
+        if source is not None and source.max_degree is not None:
+            limits = replace(limits, max_degree=source.max_degree)
+        if source is not None and source.budget is not None:
+            limits = replace(limits, budget=float(source.budget))
+    if options.memory is not None:
+        limits = replace(limits, memory=options.memory * GIGABYTE)
     goals = spec.goals if spec.kind == "interaction-design" else None
     if goals is not None and goals.decay_rate is not None:
         limits = replace(limits, decay_rate=goals.decay_rate.exact)
@@ -114,20 +114,20 @@ def certify_design(
         wide = None if designed is None else for_goal(designed)
         if designed is not None and wide is not None:
             found = certified(wide)
-            if (result := _of_older(designed, wide, found)) is not None:
+            if (result := _find_older(designed, wide, found)) is not None:
                 return result
             older = tuple(replace(a, step=f"{a.step}, older force") for a in found.attempts)
     except (DesignError, AssemblyError):
         pass  # Outside the model there is no proof.
     found, points = certified(designed), ""
     if found.is_open and designed is not None and designed.spec.sampling is not None:
-        points, found = _at_points(designed, found, limits, progress)
+        points, found = _refute_at_points(designed, found, limits, progress)
     found = replace(found, attempts=(*older, *found.attempts))
     return Result(loaded, designed, found, certificate_of(loaded, designed, found, points))
 
 
-def _at_points(
-    designed: Designed, known: Certification, limits: Limits, progress: Progress
+def _refute_at_points(
+    designed: Designed, certification: Certification, limits: Limits, progress: Progress
 ) -> tuple[str, Certification]:
     """Look for growth at points of the ranges, which their enclosure does not refute."""
     from nrs_design.loop.assemble import POINTS, assemble
@@ -137,27 +137,27 @@ def _at_points(
     for points in POINTS:
         with placed(designed.loaded):
             system = assemble(designed.spec, designed.plant, designed.design, points=points)
-        if system.modes == known.system.modes:
+        if system.modes == certification.system.modes:
             continue
         found = certify(system, Method.PERIOD, limits, progress)
-        tried = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
-        known = replace(known, attempts=(*known.attempts, *tried))
+        attempts = tuple(replace(a, step=f"{a.step}, at {points}") for a in found.attempts)
+        certification = replace(certification, attempts=(*certification.attempts, *attempts))
         if found.verdict is Verdict.REFUTED or found.refuted_in is not None:
-            return points, replace(found, attempts=known.attempts)
-    return "", known
+            return points, replace(found, attempts=certification.attempts)
+    return "", certification
 
 
-def _of_older(designed: Designed, wide: Designed, found: Certification) -> Result | None:
+def _find_older(designed: Designed, wide: Designed, certification: Certification) -> Result | None:
     """Return the result for an older force, or None if it misses a goal."""
     assert wide.spec.sampling is not None, "a delay is of samples"
-    good = tuple(item for item in found.statements if item.shows.is_good)
-    status = common_quadratic_of(found.system, good)
-    found = replace(found, statements=good, common_quadratic=status)
-    certificate = certificate_of(designed.loaded, designed, found)
+    good = tuple(item for item in certification.statements if item.shows.is_good)
+    status = common_quadratic_of(certification.system, good)
+    certification = replace(certification, statements=good, common_quadratic=status)
+    certificate = certificate_of(designed.loaded, designed, certification)
     if certificate is None:
         return None
     certificate = replace(certificate, ages=wide.spec.sampling.delay)
-    result = Result(designed.loaded, designed, found, certificate)
+    result = Result(designed.loaded, designed, certification, certificate)
     return result if meets_goals(result) else None
 
 
@@ -189,20 +189,22 @@ def certificate_of(
     )
 
 
-def recorded_certification(kept: Certificate, file: Path, seconds: float = 0.0) -> Certification:
+def recorded_certification(
+    certificate: Certificate, file: Path, seconds: float = 0.0
+) -> Certification:
     """Return a checked certificate as the result of a search."""
     from nrs_design.certificates.certificate import verdict_of
     from nrs_design.search.family import floats_in_silence, rate_limit
 
     outcome = f"{file.name}: each of its statements was checked again exactly"
     with floats_in_silence():
-        limit = rate_limit(kept.system)
+        limit = rate_limit(certificate.system)
     return Certification(
-        kept.system,
-        verdict_of(kept.system, kept.statements),
-        kept.common_quadratic,
+        certificate.system,
+        verdict_of(certificate.system, certificate.statements),
+        certificate.common_quadratic,
         "certificate",
-        kept.statements,
+        certificate.statements,
         (Attempt("certificate", outcome, seconds),),
         limit,
     )
@@ -219,7 +221,7 @@ def gains_text(designed: Designed | None) -> Gains:
 
 def is_of_gains(gains: Gains, designed: Designed | None) -> bool:
     """Tell whether gains, such as those of a certificate, are those that a design ships."""
-    return {name: dict(own) for name, own in gains.items()} == gains_text(designed)
+    return {name: dict(values) for name, values in gains.items()} == gains_text(designed)
 
 
 def assemble_spec(

@@ -27,8 +27,8 @@ from nrs_design.pipeline.free_gains import (
     Array,
     FreeGains,
     RoundedGains,
+    add_problems,
     gain_branches,
-    with_problems,
 )
 from nrs_design.pipeline.gain_coordinate import Written
 from nrs_design.pipeline.proof_constraints import NOTHING, ROOM, constraints_of, evaluator
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 MOST_ROUNDINGS = 4  # Roundings that are proved at most
 # Where the proof falls short, there is more room for roundings.
 ROOMS = (ROOM, (4e-3, 1.2e-2), (2e-2, 4e-2))
-NEAR = 5e-3  # A goal that is missed by no more than this share may be met by rounding
+GOAL_TOLERANCE = 5e-3  # A goal that is missed by no more than this share may be met by rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def run_certified_optimum(
     try:
         return find_certified_optimum(designed, analysis, progress)
     except DesignError:
-        if (found := _at_least_cost(designed, analysis, progress)) is not None:
+        if (found := _find_cheapest(designed, analysis, progress)) is not None:
             return found
         raise
 
@@ -88,7 +88,7 @@ def find_certified_optimum(
     with placed(designed.loaded):
         wide, items = designed, analysis
         if (older := for_goal(designed)) is not None:
-            wide, items = older, with_problems(older, analysis)
+            wide, items = older, add_problems(older, analysis)
         found, missed = [], []
         for gains in gain_branches(wide, items):
             try:
@@ -100,7 +100,7 @@ def find_certified_optimum(
         return min(found, key=lambda item: item.cost)
 
 
-def _at_least_cost(
+def _find_cheapest(
     designed: Designed, analysis: DesignAnalysis, progress: Progress
 ) -> CertifiedOptimum | None:
     """Return the gains of the least cost, if any function proves the goals of them."""
@@ -120,8 +120,8 @@ class _Search:
     def __init__(self, given: Designed, gains: FreeGains, progress: Progress) -> None:
         self.given, self.gains, self.progress = given, gains, progress
         self.goals = given.spec.goals
-        asked = {key: getattr(self.goals, key, None) for key in STEERING}
-        self.wanted: dict[str, Quantity] = {k: v for k, v in asked.items() if v is not None}
+        goals = {key: getattr(self.goals, key, None) for key in STEERING}
+        self.wanted: dict[str, Quantity] = {k: v for k, v in goals.items() if v is not None}
         self.constraints = constraints_of(self.goals, *ROOMS[0])
 
     def run(self) -> CertifiedOptimum:
@@ -136,7 +136,7 @@ class _Search:
             evaluations += found.evaluations
             if free_rate is None:
                 free_rate = self.constraints[0].number(float(first.values[0]))
-            if found.last.values.min() <= -NEAR:
+            if found.last.values.min() <= -GOAL_TOLERANCE:
                 break
             self.progress("proof")
             if (proved := self._proved(found, problem)) is not None:
@@ -178,24 +178,24 @@ class _Search:
         found = minimize_in_trust_region(problem, first)
         # With more damping, or with less.
         for bound in (gains.high, gains.low):
-            if found.last.values.min() > -NEAR:
+            if found.last.values.min() > -GOAL_TOLERANCE:
                 break
             other = minimize_in_trust_region(problem, evaluate((start + bound) / 2, None))
             found = max(found, other, key=lambda one: float(one.last.values.min()))
         return problem, first, found
 
     def _proved(
-        self, found: ConstrainedOptimum, problem: ConstrainedProblem
+        self, optimum: ConstrainedOptimum, problem: ConstrainedProblem
     ) -> tuple[Result, RoundedGains] | None:
         """Round to the digits that ship, the cheapest first, and prove one that meets the goals."""
-        last, near = found.last, []
+        last, shares = optimum.last, []
         for one in self.gains.roundings(last.x):
-            missed = problem.penalty(last.values + found.jacobian @ (one.x - last.x))
+            missed = problem.penalty(last.values + optimum.jacobian @ (one.x - last.x))
             if problem.penalty(self.gains.spared(one.x)) == 0:
                 rank = missed > 0, problem.cost(one.x) + missed, *one.x.tolist()
-                near.append((rank, one))
-        near.sort(key=lambda pair: pair[0])
-        for _, one in near[:MOST_ROUNDINGS]:
+                shares.append((rank, one))
+        shares.sort(key=lambda pair: pair[0])
+        for _, one in shares[:MOST_ROUNDINGS]:
             designed = replace(self.given, design=self.gains.shipping(one, last.x))
             # After a failed proof, other gains cost less than other functions.
             limits = replace(search_limits(designed.spec), decay_rate=None)
@@ -207,24 +207,25 @@ class _Search:
     def _unreachable(self, last: Evaluation, *, in_floats: bool) -> DesignError:
         """Name the missed goal, and the nearest gains."""
         worst = self.constraints[int(np.argmin(last.values))]
-        value, wanted = float(last.values.min()), self.wanted.get(worst.key)
-        reached = worst.number(value)
-        at = ("goals", next(iter(self.wanted), "") if wanted is None else worst.key)
+        value, goal = float(last.values.min()), self.wanted.get(worst.key)
+        number = worst.number(value)
+        place = ("goals", next(iter(self.wanted), "") if goal is None else worst.key)
         if in_floats:
             return DesignError(
                 f"the goals are reached in floating point, near {self.gains.said(last.x)}, but "
                 "roundings take what would prove it",
                 remedy="relax a goal a little, or raise design.significant_digits (at most 7)",
-                at=at,
+                at=place,
             )
-        asked = "at all" if wanted is None else f"of {wanted.text}"
+        asked = "at all" if goal is None else f"of {goal.text}"
         # A rate that is not positive is no decay.
-        none = value <= NOTHING or reached <= 0
-        reach = "reach none" if none else f"reach {reached:.4g} {unit(worst.unit)}"
+        is_none = value <= NOTHING or number <= 0
+        result = "reach none" if is_none else f"reach {number:.4g} {unit(worst.unit)}"
         return DesignError(
             f"no gains within the bounds were found that one quadratic function for all modes "
-            f"proves with a {worst.title} {asked}: the nearest, {self.gains.said(last.x)}, {reach}",
+            f"proves with a {worst.title} {asked}: the nearest, {self.gains.said(last.x)}, "
+            f"{result}",
             remedy="relax the goal, widen the bounds, narrow the ranges, or shorten the delay; or "
             "give the gains, and let certify-switching try other functions",
-            at=at,
+            at=place,
         )

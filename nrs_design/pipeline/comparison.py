@@ -91,8 +91,10 @@ class Comparison:
         if self.not_compared:
             parts = ", ".join(self.not_compared)
             texts.append(f"Not compared, since not both files tell it: {parts}.")
-        told = (side.parts.get(Part.VERDICT, {}) for side in (self.before, self.after))
-        names = [next((what for what in of if what.startswith(_RATES)), "") for of in told]
+        verdicts = (side.parts.get(Part.VERDICT, {}) for side in (self.before, self.after))
+        names = [
+            next((key for key in verdict if key.startswith(_RATES)), "") for verdict in verdicts
+        ]
         if all(names) and names[0] != names[1]:
             texts.append(
                 f"The rates are not compared: {' and '.join(f'a {name}' for name in names)} are "
@@ -197,13 +199,13 @@ def _rate_name(system: SwitchedSystem) -> str:
     return f"{contraction} of {exact_text(system.sample_time)} s"
 
 
-def _flat(said: Data, where: str = "") -> Iterator[tuple[str, str]]:
+def _flat(data: Data, place: str = "") -> Iterator[tuple[str, str]]:
     """Yield each value of a spec with its place, such as ``controllers.soft.Bt``."""
-    if isinstance(said, str):
-        yield where, said
-    elif isinstance(said, tuple):
-        for index, item in enumerate(said):
-            yield from _flat(item, f"{where}[{index}]")
+    if isinstance(data, str):
+        yield place, data
+    elif isinstance(data, tuple):
+        for index, item in enumerate(data):
+            yield from _flat(item, f"{place}[{index}]")
     else:
-        for key, value in said.items():
-            yield from _flat(value, f"{where}.{key}" if where else key)
+        for key, value in data.items():
+            yield from _flat(value, f"{place}.{key}" if place else key)

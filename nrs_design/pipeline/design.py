@@ -61,8 +61,8 @@ def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
     for at, text in doubt_sizes(loaded.spec):
         if text not in (error.remedy or ""):
             place = loaded.place(*at)
-            rest = f" Otherwise, {error.remedy}" if error.remedy else ""
-            error.remedy = f"first, line {place.line}: {text}{rest}"
+            alternative = f" Otherwise, {error.remedy}" if error.remedy else ""
+            error.remedy = f"first, line {place.line}: {text}{alternative}"
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
@@ -161,6 +161,6 @@ def for_goal(designed: Designed) -> Designed | None:
 def declaring(designed: Designed, age: int) -> Designed:
     """Return a design whose spec declares ages of the force up to this one, in samples."""
     assert designed.spec.sampling is not None, "a delay is of samples"
-    least = designed.spec.sampling.delay[0]
-    spec = designed.spec.declaring_ages((min(least, age), age))
+    shortest = designed.spec.sampling.delay[0]
+    spec = designed.spec.declaring_ages((min(shortest, age), age))
     return replace(designed, loaded=replace(designed.loaded, spec=spec), spec=spec)

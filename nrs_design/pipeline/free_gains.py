@@ -76,8 +76,8 @@ class FreeGains:
             units = self.designed.design.units[item.name]
             Mt, Bt = item.given.Mt, item.given.Bt
             if not self.massless:
-                least = Mt.min.exact or LEAST_MASS * Mt.max.exact
-                found.append(bounded_gain(item.name, "Mt", Mt, least, units["Mt"]))
+                lowest = Mt.min.exact or LEAST_MASS * Mt.max.exact
+                found.append(bounded_gain(item.name, "Mt", Mt, lowest, units["Mt"]))
             found.append(bounded_gain(item.name, "Bt", Bt, Bt.min.exact, units["Bt"]))
         found += freed_gains(self.designed)
         return tuple(one for one in found if one is not None)
@@ -137,27 +137,27 @@ class FreeGains:
         problems = known_problems(self, tuple(np.where(self._moves_cost, x, self.low)))
         gains, costs = self.gains(x), {}
         for item, problem in zip(self.analysis.impedance, problems, strict=True):
-            own = gains[item.name]
-            costs[item.name] = float(impedance_cost(problem, own["Mt"], own["Bt"]))
+            values = gains[item.name]
+            costs[item.name] = float(impedance_cost(problem, values["Mt"], values["Bt"]))
         return costs
 
     def spared(self, x: Array) -> Array:
         """Return for each controller with goals by how much they are met; negative if missed."""
-        gains, met = self.gains(x), []
+        gains, margins = self.gains(x), []
         for item in self.analysis.impedance:
             if item.requirement.goals:
                 own = (np.array([gains[item.name][gain]]) for gain in BOUNDED)
-                met.append(-self._requirement(item, x).violation(*own)[0])
-        met += self._spared_by_others(x)
-        return np.asarray(np.maximum(np.array(met, dtype=float), -1.0))
+                margins.append(-self._requirement(item, x).violation(*own)[0])
+        margins += self._spared_by_others(x)
+        return np.asarray(np.maximum(np.array(margins, dtype=float), -1.0))
 
     def design(self, x: Array) -> ControllerDesign:
         """Return the design with the single-precision gains next to a point."""
         return self._design(x, round_float32)
 
-    def _design(self, x: Array, rounded: Callable[[Fraction], Fraction]) -> ControllerDesign:
+    def _design(self, x: Array, rounding: Callable[[Fraction], Fraction]) -> ControllerDesign:
         gains = {
-            name: {gain: rounded(Fraction(value)) for gain, value in values.items()}
+            name: {gain: rounding(Fraction(value)) for gain, value in values.items()}
             for name, values in self.gains(x).items()
         }
         return self.designed.design.replace_gains(gains)
@@ -177,10 +177,10 @@ class FreeGains:
             if not getattr(item.given, gain).fixed
         }
         pairs = zip(self.coordinates, x, strict=True)
-        for near in product(*(one.near(float(value), digits) for one, value in pairs)):
-            chosen = dict(zip((one.name for one in self.coordinates), near, strict=True))
-            point = np.log([float(value) for value, _ in near])
-            yield RoundedGains(point, zeros | chosen)
+        for neighbors_of_x in product(*(one.near(float(value), digits) for one, value in pairs)):
+            gains = dict(zip((one.name for one in self.coordinates), neighbors_of_x, strict=True))
+            point = np.log([float(value) for value, _ in neighbors_of_x])
+            yield RoundedGains(point, zeros | gains)
 
     def holds(self, design: ControllerDesign) -> bool:
         """Tell whether a design has masses where these gains have some, and none where not."""
@@ -222,11 +222,11 @@ class FreeGains:
     def said(self, x: Array) -> str:
         """Write the impedance gains and the free gains at a point."""
         gains, units = self.gains(x), self.designed.design.units
-        shown = {item.name: dict.fromkeys(BOUNDED) for item in self.analysis.impedance}
+        rows = {item.name: dict.fromkeys(BOUNDED) for item in self.analysis.impedance}
         for one in self.coordinates:
-            shown.setdefault(one.controller, {})[one.gain] = None
+            rows.setdefault(one.controller, {})[one.gain] = None
         texts = []
-        for name, names in shown.items():
+        for name, names in rows.items():
             pairs = ((gain, units[name][gain].replace("*", " ")) for gain in names)
             of_one = ", ".join(f"{gain} = {gains[name][gain]:.4g} {unit}" for gain, unit in pairs)
             texts.append(f"{name} {of_one}")
@@ -281,19 +281,19 @@ class FreeGains:
         """Descend from a start, where goals of controllers stay met."""
         from nrs_design.design.trust_region import cheapest
 
-        there = cheapest(self.cost, self.spared, self.low, self.high, start)
-        better = self.cost(there) < self.cost(start) and (self.spared(there) >= -MISSED).all()
-        return there if better else start
+        optimum = cheapest(self.cost, self.spared, self.low, self.high, start)
+        better = self.cost(optimum) < self.cost(start) and (self.spared(optimum) >= -MISSED).all()
+        return optimum if better else start
 
     def _spared_by_others(self, x: Array) -> list[float]:
         """Return the margins of goals of controllers with or after freed gains."""
         from nrs_design.design.laws import LAW_DESIGNS
 
-        named = {one.controller for one in self.coordinates if one.given is not None}
+        controllers = {one.controller for one in self.coordinates if one.given is not None}
         spared, design = [], self._design(x, Fraction)
         for item in self.analysis.tuned:
             goals = any(found.goal is not None for found in item.achieved)
-            if not goals or named.isdisjoint({MOTION, item.name}):
+            if not goals or controllers.isdisjoint({MOTION, item.name}):
                 continue
             (controller,) = (c for c in design.controllers if c.name == item.name)
             given = self.designed.spec.controllers[item.name]
@@ -327,7 +327,7 @@ def gain_branches(designed: Designed, analysis: DesignAnalysis) -> Iterator[Free
         yield FreeGains(designed, analysis, massless=False)
 
 
-def with_problems(designed: Designed, analysis: DesignAnalysis) -> DesignAnalysis:
+def add_problems(designed: Designed, analysis: DesignAnalysis) -> DesignAnalysis:
     """Return what gains are optimized for under another spec than that of an analysis.
 
     What its own gains achieve is not asked: others are to be chosen, and these may be unstable.

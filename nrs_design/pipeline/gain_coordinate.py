@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 CLOSE = 1e-6  # Largest distance of a logarithm from a bound that counts as the bound
-NEAR = 1e-3  # The same after a search
+BOUND_TOLERANCE = 1e-3  # The same after a search
 BOUNDED = ("Mt", "Bt")  # The gains that are free by bounds of their own
 
 
@@ -52,8 +52,8 @@ class GainCoordinate:
     def settled(self, x: float) -> float:
         """Return the same, and a bound itself where a search stopped at it."""
         bounds = zip(self.ends, (self.low, self.high), strict=True)
-        at = (float(bound) for end, bound in bounds if abs(x - end) < CLOSE)
-        return next(at, self.value(x))
+        ends = (float(bound) for end, bound in bounds if abs(x - end) < CLOSE)
+        return next(ends, self.value(x))
 
     def near(self, x: float, digits: int) -> list[tuple[Fraction, str]]:
         """Return values near a coordinate as a spec may give them, and their texts.
@@ -64,33 +64,33 @@ class GainCoordinate:
             if end.exact > 0 and abs(x - log(end.si)) < CLOSE:
                 return [(end.exact, end.text)]
         value = self.value(x)
-        found = {round_significant(near, digits) for near in neighbors(value, digits)}
-        inside = sorted(v for v in found if self.low <= v <= self.high and v > 0)
+        found = {round_significant(neighbor, digits) for neighbor in neighbors(value, digits)}
+        candidates = sorted(v for v in found if self.low <= v <= self.high and v > 0)
         if self.written is None:
             # Between close bounds there may be no number of so few digits.
-            at = min(inside, key=lambda v: abs(v - Fraction(value)), default=self.given)
+            at = min(candidates, key=lambda v: abs(v - Fraction(value)), default=self.given)
             assert at is not None, "as factors are on a given gain"
-            inside = [at]
-        return [(v, f"{exact_text(v)} {self.unit}") for v in inside]
+            candidates = [at]
+        return [(v, f"{exact_text(v)} {self.unit}") for v in candidates]
 
     def at_bound(self, x: float) -> str | None:
         """Say on which of its bounds a gain is that is free by factors; None if on neither."""
         if self.given is None:
             return None
         bounds = zip(("lower", "upper"), self.ends, strict=True)
-        return next((name for name, end in bounds if abs(x - end) < NEAR), None)
+        return next((name for name, end in bounds if abs(x - end) < BOUND_TOLERANCE), None)
 
 
 def bounded_gain(
-    controller: str, gain: str, given: GainSpec, low: Fraction, unit: str
+    controller: str, gain: str, spec: GainSpec, low: Fraction, unit: str
 ) -> GainCoordinate | None:
     """Return the coordinate of a gain with bounds; None where they leave nothing to choose.
 
     The lower bound is in SI, above that of the spec where the spec allows zero.
     """
-    if not 0 < low < given.max.exact:
+    if not 0 < low < spec.max.exact:
         return None
-    return GainCoordinate(controller, gain, unit, low, given.max.exact, (given.min, given.max))
+    return GainCoordinate(controller, gain, unit, low, spec.max.exact, (spec.min, spec.max))
 
 
 def freed_gains(designed: Designed) -> Iterator[GainCoordinate]:

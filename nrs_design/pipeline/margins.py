@@ -63,15 +63,15 @@ def run_proof_margins(
         loop = _run_loop(result, quick, progress)
     if margin and loaded.spec.has_ranges:
         # Around the nominal values; the design is kept.
-        stretched = partial(assemble_spec, loaded, result.designed)
-        box = find_margin(stretched, decide, known, progress)
+        assemble = partial(assemble_spec, loaded, result.designed)
+        box = find_margin(assemble, decide, known, progress)
     if shortest_dwell:
         # Whatever dwell time the spec declares.
         dwell = find_shortest_dwell(known.system, decide, known, progress)
     return ProofMargins(loop, box, dwell)
 
 
-def _with_sampling(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:
+def _resample(designed: Designed, changes: Mapping[str, object]) -> SwitchedSystem:
     """Return the loop of a design, undisturbed, where it is sampled otherwise."""
     assert designed.spec.sampling is not None
     sampling = designed.spec.sampling.model_copy(update=changes)
@@ -113,7 +113,7 @@ def _has_loop(result: Result) -> bool:
 def _sampling_margins(
     designed: Designed,
     sampling: SamplingSpec,
-    known: Certification,
+    certification: Certification,
     limits: Limits,
     progress: Progress,
 ) -> tuple[Bracket, Bracket]:
@@ -122,22 +122,22 @@ def _sampling_margins(
     from nrs_design.search.margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
-    def at_delays(shortest: int, longest: int) -> SwitchedSystem:
-        return _with_sampling(designed, {"delay": (shortest, longest)})
+    def assemble_delays(shortest: int, longest: int) -> SwitchedSystem:
+        return _resample(designed, {"delay": (shortest, longest)})
 
-    def at_period(period: Fraction) -> SwitchedSystem:
+    def assemble_period(period: Fraction) -> SwitchedSystem:
         changes = {
             name: replace(given, value=period * given.value / sampling.period.exact)
             for name in ("period", "outer_period")
             if (given := getattr(sampling, name)) is not None
         }
-        return _with_sampling(designed, changes)
+        return _resample(designed, changes)
 
-    quick, alone = partial(certify, limits=limits), partial(refuted_at_once, limits=limits)
+    quick, refute = partial(certify, limits=limits), partial(refuted_at_once, limits=limits)
     delays = (*sampling.delay, LONGEST_DELAY)
     return (
-        find_longest_delay(delays, at_delays, quick, alone, known, progress),
-        find_longest_period(sampling.period.exact, at_period, quick, known, progress),
+        find_longest_delay(delays, assemble_delays, quick, refute, certification, progress),
+        find_longest_period(sampling.period.exact, assemble_period, quick, certification, progress),
     )
 
 

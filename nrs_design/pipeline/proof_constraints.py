@@ -49,14 +49,14 @@ class ProofConstraint:
     number: Callable[[float], float]  # Number for a value, in SI units
 
 
-def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
+def rate_constraint(goal: float, scale: float) -> ProofConstraint:
     """Return the constraint on the best decay rate of one form for all modes, in 1/s.
 
     `wanted` has room for roundings; the scale is what a value of one is.
     """
 
     def number(value: float) -> float:
-        return value * scale + wanted
+        return value * scale + goal
 
     def find(
         system: SwitchedSystem, expected: float | None, allowance: Allowance
@@ -65,11 +65,11 @@ def rate_constraint(wanted: float, scale: float) -> ProofConstraint:
         from nrs_design.search.rate_slope import rate_slope
 
         guess = None if expected is None else number(expected)
-        found = rate_slope(system, guess, allowance, wanted=wanted)
+        found = rate_slope(system, guess, allowance, wanted=goal)
         if found is None:
             return None
         return ConstraintValue(
-            (found.rate - wanted) / scale,
+            (found.rate - goal) / scale,
             lambda system: found.change(system) / scale,
             f"decay rate {found.rate:.4g} 1/s",
         )
@@ -112,8 +112,8 @@ def constraints_of(
     So much more is asked for of a rate, as a share, and so much less of a bound.
     """
     rate = None if goals is None else goals.decay_rate
-    least = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
-    decay = rate_constraint(least, max(least, 1.0))
+    lowest = LEAST_RATE if rate is None else max(rate.si * (1 + room), LEAST_RATE)
+    decay = rate_constraint(lowest, max(lowest, 1.0))
     if goals is None or goals.peak_torque is None:
         return (decay,)
     return decay, force_constraint(goals.peak_torque.si * (1 - room_of_bounds))
@@ -143,18 +143,18 @@ def evaluator(
         return found or ConstraintValue(NOTHING, lambda system: 0.0, f"no {constraint.title}")
 
     def evaluate(x: Array, expected: Array | None) -> Evaluation:
-        here = gains.system(x)
+        system = gains.system(x)
         guesses = [None] * len(constraints) if expected is None else [*map(float, expected)]
-        found = [value(one, here, guess) for one, guess in zip(constraints, guesses, strict=True)]
+        found = [value(one, system, guess) for one, guess in zip(constraints, guesses, strict=True)]
         progress(f"{', '.join(one.said for one in found)} at cost {gains.cost(x):.5g}")
 
         def jacobian() -> Array:
-            moved = []
+            systems = []
             for i in range(len(x)):
                 step = -STEP if x[i] + STEP > gains.high[i] else STEP
-                there = gains.system(x + step * np.eye(len(x))[i])
-                moved.append([one.change(there) / step for one in found])
-            return np.array(moved).T
+                neighbor = gains.system(x + step * np.eye(len(x))[i])
+                systems.append([one.change(neighbor) / step for one in found])
+            return np.array(systems).T
 
         return Evaluation(x, np.array([one.value for one in found]), jacobian)
 

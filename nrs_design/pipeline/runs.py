@@ -95,9 +95,9 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     """
     progress(f"checking {file.name}")
     start = perf_counter()
-    designed, kept = read_recorded(loaded, file)
-    certification = recorded_certification(kept, file, perf_counter() - start)
-    return Result(loaded, designed, certification, kept)
+    designed, certificate = read_recorded(loaded, file)
+    certification = recorded_certification(certificate, file, perf_counter() - start)
+    return Result(loaded, designed, certification, certificate)
 
 
 def run_kept(loaded: LoadedSpec, recorded: Recorded, progress: Progress = silent) -> Result | None:

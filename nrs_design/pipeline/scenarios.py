@@ -67,13 +67,13 @@ def run_judgement(designed: Designed) -> DesignAnalysis:
 
 
 def judged_if_stable(
-    designed: Designed | None, tell: Callable[[str], object] = lambda _: None
+    designed: Designed | None, report: Callable[[str], object] = lambda _: None
 ) -> DesignAnalysis | None:
     """Analyze a design; None without a design, and, with a message, if a loop is unstable."""
     try:
         return None if designed is None else run_judgement(designed)
     except DesignError as error:
-        tell(error.message)
+        report(error.message)
         return None
 
 
@@ -83,12 +83,14 @@ def _doubt_runs(designed: Designed) -> Iterator[Doubt]:
         runs = tuple(run_scenarios(designed))
     except NrsDesignError:
         return
-    limit, of = designed.spec.limits.torque, designed.spec.axis.unit("N*m")
+    limit, unit = designed.spec.limits.torque, designed.spec.axis.unit("N*m")
     for one in runs:
         peak = one.metrics["peak_torque"]
         # A limit of the scenario itself is judged by the gate.
         if "torque" not in one.scenario.limits and peak > limit.si:
-            text = f"simulated, {one.scenario.name}: a torque of {upper(Fraction(peak), 4)} {of}, "
+            text = (
+                f"simulated, {one.scenario.name}: a torque of {upper(Fraction(peak), 4)} {unit}, "
+            )
             text += f"beyond limits.torque of {limit.text}"
             yield Doubt(("limits", "torque"), text, beyond=peak / limit.si)
 
@@ -103,16 +105,16 @@ def _simulate(
     from nrs_design.simulation.sampled import simulate_sampled
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, scenario)
-    given, most = (designed.plant, designed.design, scenario), wanted.max_steps or MAX_STEPS
+    given, max_steps = (designed.plant, designed.design, scenario), wanted.max_steps or MAX_STEPS
 
     def tell(step: str) -> None:
         progress(f"{scenario.name}, {step}")
 
     if engine == "exact":
-        run = simulate_exactly(spec, *given, max_steps=most, progress=tell)
+        run = simulate_exactly(spec, *given, max_steps=max_steps, progress=tell)
     else:
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
-        run = simulate_sampled(timed, *given, max_steps=most, progress=tell)
+        run = simulate_sampled(timed, *given, max_steps=max_steps, progress=tell)
     return Simulated(scenario, run, summarize(spec, scenario, run))
 
 
@@ -198,8 +200,8 @@ def hold_bounds(
         # One bound for each output is about all disturbances at once.
         if bound is None or set(bound.channels) != set(system.channels):
             continue
-        beside = Coverage(designed.spec, system, statement, simulated.scenario, simulated.run)
-        reasons, level = tuple(beside.uncovered()), upper_float(bound.level)
+        coverage = Coverage(designed.spec, system, statement, simulated.scenario, simulated.run)
+        reasons, level = tuple(coverage.uncovered()), upper_float(bound.level)
         found.append(CertifiedBound(bound.output.name, bound.output.unit, level, reasons))
     return tuple(found)
 

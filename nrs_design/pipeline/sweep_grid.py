@@ -64,17 +64,17 @@ class Grid:
         return tuple((field.at, text) for field, text in zip(self.fields, point, strict=True))
 
 
-def read_grid(spec: Path, said: Sequence[str]) -> Grid:
+def read_grid(spec: Path, texts: Sequence[str]) -> Grid:
     """Read the texts of ``--set``, and refuse them if they do not fit the spec."""
-    if not 1 <= len(said) <= MAX_FIELDS:
+    if not 1 <= len(texts) <= MAX_FIELDS:
         raise SpecError(
-            f"a sweep has one to {MAX_FIELDS} fields, not {len(said)}",
+            f"a sweep has one to {MAX_FIELDS} fields, not {len(texts)}",
             remedy="set each with --set PATH=VALUES",
         )
     read_axes(spec)
     file = file_of(spec)
     known = dict(_paths(parse_document(read_source(file), file), (), ""))
-    fields = tuple(_field(text, known, file) for text in said)
+    fields = tuple(_field(text, known, file) for text in texts)
     for index, field in enumerate(fields):
         for other in fields[:index]:
             shorter = min(len(field.at), len(other.at))
@@ -92,35 +92,35 @@ def read_grid(spec: Path, said: Sequence[str]) -> Grid:
     return Grid(fields)
 
 
-def _field(said: str, known: dict[str, Keys], file: Path) -> Field:
+def _field(said: str, paths: dict[str, Keys], file: Path) -> Field:
     path, equals, values = said.partition("=")
     path = path.strip()
     if not equals:
         raise SpecError(f"{quoted(said)} sets nothing", remedy=f"write PATH=VALUES; {EXAMPLE}")
-    if path not in known:
+    if path not in paths:
         # Most typing errors are in the last word.
-        above = f"{path.rpartition('.')[0]}."
-        beside = [name for name in known if name.startswith(above)] or [*known]
-        called = [name for name in known if name.endswith(f".{path}")]
+        prefix = f"{path.rpartition('.')[0]}."
+        siblings = [name for name in paths if name.startswith(prefix)] or [*paths]
+        called = [name for name in paths if name.endswith(f".{path}")]
         raise SpecError(
             f"there is no field {quoted(path)} in this spec",
             path=file,
-            remedy=did_you_mean(path, beside, called=called),
+            remedy=did_you_mean(path, siblings, called=called),
         )
-    return Field(path, known[path], parse_values(values))
+    return Field(path, paths[path], parse_values(values))
 
 
-def _paths(node: Node, at: Keys, said: str) -> Iterator[tuple[str, Keys]]:
+def _paths(node: Node, keys: Keys, said: str) -> Iterator[tuple[str, Keys]]:
     """Yield every place of a document: a dotted path, in which items are counted from 0."""
-    if at:
-        yield said, at
+    if keys:
+        yield said, keys
     inner: Sequence[tuple[str | int, Node]] = ()
     if isinstance(node, Mapping):
         inner = tuple(node.entries.items())
     elif isinstance(node, Items):
         inner = tuple(enumerate(node.items))
-    for key, below in inner:
-        yield from _paths(below, (*at, key), f"{said}.{key}" if said else str(key))
+    for key, child in inner:
+        yield from _paths(child, (*keys, key), f"{said}.{key}" if said else str(key))
 
 
 def parse_values(text: str) -> tuple[str, ...]:
@@ -138,16 +138,16 @@ def parse_values(text: str) -> tuple[str, ...]:
                 remedy=EXAMPLE,
             )
         steps = (Fraction(index, count - 1) for index in range(count))
-        return tuple(_with_unit(exact_text(low + (high - low) * s), found[4]) for s in steps)
+        return tuple(_add_unit(exact_text(low + (high - low) * s), found[4]) for s in steps)
     items = [item.strip() for item in text.split(",")]
     if not all(items) or ".." in text or any(mark in text for mark in "[]{}"):
         raise SpecError(f"{quoted(text)} has no values of one field", remedy=EXAMPLE)
     unit = items[-1].partition(" ")[2].strip()
-    values = tuple(_with_unit(item, unit) if is_number(item) else item for item in items)
+    values = tuple(_add_unit(item, unit) if is_number(item) else item for item in items)
     if len({*values}) < len(values):
         raise SpecError(f"{quoted(text)} has a value twice", remedy="leave one out")
     return values
 
 
-def _with_unit(number: str, unit: str | None) -> str:
+def _add_unit(number: str, unit: str | None) -> str:
     return f"{number} {unit}" if unit else number

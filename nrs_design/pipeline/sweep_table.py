@@ -28,7 +28,7 @@ def flat(document: object, name: str = "") -> Iterator[tuple[str, Cell]]:
     if isinstance(document, Mapping):
         inner = [(str(key), value) for key, value in document.items() if key != "name"]
     elif isinstance(document, list | tuple):
-        inner = [(_called(item, at), item) for at, item in enumerate(document)]
+        inner = [(_called(item, index), item) for index, item in enumerate(document)]
     elif document is None or isinstance(document, str | int | float | bool):
         yield name, document
     for key, value in inner:
@@ -36,9 +36,9 @@ def flat(document: object, name: str = "") -> Iterator[tuple[str, Cell]]:
             yield from flat(value, f"{name}.{key}" if name else key)
 
 
-def _called(item: object, at: int) -> str:
-    named = item.get("name") if isinstance(item, Mapping) else None
-    return named if isinstance(named, str) and named else str(at)
+def _called(item: object, index: int) -> str:
+    name = item.get("name") if isinstance(item, Mapping) else None
+    return name if isinstance(name, str) and name else str(index)
 
 
 def facts_in(rows: Sequence[Row]) -> list[str]:
@@ -61,20 +61,21 @@ def telling(rows: Sequence[Row]) -> list[str]:
     return sorted(found, key=lambda name: name.count("."))
 
 
-def chosen(rows: Sequence[Row], wanted: Sequence[str]) -> list[str]:
+def choose_facts(rows: Sequence[Row], names: Sequence[str]) -> list[str]:
     """Return the facts that are asked for, each by its whole name, or by how the shortest end."""
     found: list[str] = []
-    for name in wanted:
-        every = facts_in(rows)
-        named = [one for one in every if one == name or one.endswith(f".{name}")]
+    for name in names:
+        facts = facts_in(rows)
+        named = [one for one in facts if one == name or one.endswith(f".{name}")]
         if not named:
-            told = [*telling(rows), *every]
+            ordered = [*telling(rows), *facts]
             raise NrsDesignError(
-                f"no answer has a fact {quoted(name)}", remedy=did_you_mean(name, told, "there are")
+                f"no answer has a fact {quoted(name)}",
+                remedy=did_you_mean(name, ordered, "there are"),
             )
         # Facts of the same name further down are parts of others.
-        least = min(one.count(".") for one in named)
-        found += [one for one in named if one.count(".") == least]
+        depth = min(one.count(".") for one in named)
+        found += [one for one in named if one.count(".") == depth]
     return list(dict.fromkeys(found))
 
 

@@ -30,7 +30,7 @@ def weaker(outcome):
 def test_a_proof_that_covers_less_than_that_of_the_base(folders):
     """The spec leaves open whether contact is kept, so a proof of that alone is accepted."""
     base, paths = folders[1], [Path("specs")]
-    outcome = run_locked(find_specs(paths), read_lock(LOCK), LOCK, named=paths)
+    outcome = run_locked(find_specs(paths), read_lock(LOCK), LOCK, paths=paths)
     file = Path("reports/soft-tissue.cert.json")
     document = json.loads(file.read_text())
     document["statements"][0]["nodes"].pop()

@@ -22,7 +22,7 @@ def check(project):
         specs = find_specs([project / name for name in names or ("specs",)])
         lock = project / "nrs.lock"
         named = [project / name for name in names or ("specs",)]
-        return run_locked(specs, read_lock(lock), lock, named=named)
+        return run_locked(specs, read_lock(lock), lock, paths=named)
 
     return run
 

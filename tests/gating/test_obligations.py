@@ -15,8 +15,8 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     Status,
     failed,
-    from_here,
     is_utf8,
+    relative_path,
     relative_uri,
 )
 from nrs_design.gating.rules import INTERNAL, MODE_STABLE, SPEC
@@ -100,5 +100,5 @@ def test_a_name_that_is_not_utf8_can_be_told_and_shown(raw):
     path = Path(os.fsdecode(raw))
     assert not is_utf8(path)
     assert is_utf8(Path("ä.nrs.yaml"))
-    assert from_here(path).encode() == b"a\\xff.nrs.yaml"
+    assert relative_path(path).encode() == b"a\\xff.nrs.yaml"
     assert relative_uri(path) == "a%FF.nrs.yaml"

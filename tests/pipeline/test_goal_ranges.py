@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import declaring, run_analysis, wanted_age
-from nrs_design.pipeline.free_gains import with_problems
+from nrs_design.pipeline.free_gains import add_problems
 from tests.tables import rows
 
 from .free import freed
@@ -32,7 +32,7 @@ def test_a_design_as_if_the_spec_declared_it():
     assert designed.spec.sampling.delay == (0, 1)
     assert later.spec.sampling.delay == later.loaded.spec.sampling.delay == (0, 2)
     # Goals of controllers are held at every age, the oldest included.
-    analysis = with_problems(later, run_analysis(designed))
+    analysis = add_problems(later, run_analysis(designed))
     ages = {corner.place.texts for corner in analysis.impedance[0].requirement.corners}
     assert any("delay 2" in text for texts in ages for text in texts)
     assert later.spec.design.free == designed.spec.design.free

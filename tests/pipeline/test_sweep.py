@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.errors import NrsDesignError, SpecError
 from nrs_design.pipeline.sweep_grid import parse_values, read_grid
-from nrs_design.pipeline.sweep_table import cell_text, chosen, facts_in, flat, telling
+from nrs_design.pipeline.sweep_table import cell_text, choose_facts, facts_in, flat, telling
 from tests.support import COMMUTING, SOFT_TISSUE
 from tests.tables import rows
 
@@ -84,9 +84,9 @@ def test_a_fact_tells_if_it_differs_and_is_short():
 
 def test_facts_are_chosen_by_how_they_end():
     rows = [{"a.Mt": 1, "a.Bt": 2, "b.Bt": 3, "a.optimum.Bt": 4, "verdict": "proved"}]
-    assert chosen(rows, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
+    assert choose_facts(rows, ["Bt", "verdict", "a.Bt"]) == ["a.Bt", "b.Bt", "verdict"]
     with pytest.raises(NrsDesignError, match="no answer has a fact 'Bx'"):
-        chosen(rows, ["Bx"])
+        choose_facts(rows, ["Bx"])
 
 
 def test_cells():

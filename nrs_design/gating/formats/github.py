@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, from_here
+from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, relative_path
 from nrs_design.printable import printable
 from nrs_design.spec.task_space import file_of
 
 
-def to_github(outcome: GateOutcome) -> str:
+def format_github(outcome: GateOutcome) -> str:
     """Return one ``::error`` command per failure, worst first, then one for each warning."""
     errors = [
         _annotation("error", i, i.rule.id, f"{i.rule.title}: {i.status}. {i.message}")
@@ -20,10 +20,14 @@ def to_github(outcome: GateOutcome) -> str:
 
 
 def _annotation(kind: str, item: Obligation | Caution, title: str, text: str) -> str:
-    place = {"file": from_here(file_of(item.path)), "line": item.line or 1, "col": item.column or 1}
+    place = {
+        "file": relative_path(file_of(item.path)),
+        "line": item.line or 1,
+        "col": item.column or 1,
+    }
     properties = {**place, "title": title}
-    listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
-    return f"::{kind} {listed}::{_data(text)}"
+    fields = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
+    return f"::{kind} {fields}::{_data(text)}"
 
 
 def _data(text: str) -> str:

@@ -10,12 +10,12 @@ from nrs_design.gating.obligations import (
     GateOutcome,
     Obligation,
     SpecOutcome,
-    from_here,
+    relative_path,
 )
 from nrs_design.printable import json_text
 
 
-def to_json(outcome: GateOutcome) -> str:
+def format_json(outcome: GateOutcome) -> str:
     """Return one JSON document."""
     document = {
         "schema": "nrs-design/gate/1",
@@ -33,13 +33,15 @@ def _against(changes: BaseChanges) -> dict[str, Any]:
     return {
         "base": changes.base.as_posix(),
         "weaker": changes.weaker,
-        "others": [{"path": from_here(item.path), **_found(item)} for item in changes.others],
+        "others": [
+            {"path": relative_path(item.path), **_finding_fields(item)} for item in changes.others
+        ],
     }
 
 
 def _spec(spec: SpecOutcome) -> dict[str, Any]:
     return {
-        "path": from_here(spec.path),
+        "path": relative_path(spec.path),
         "spec_sha256": spec.sha256,
         "verdict": spec.verdict,
         "refuted_in": spec.refuted_in,
@@ -48,19 +50,19 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "rate_name": spec.rate_name,
         "modes": spec.modes,
         "bounds": list(spec.bounds),
-        "certificate": None if spec.certificate is None else from_here(spec.certificate),
+        "certificate": None if spec.certificate is None else relative_path(spec.certificate),
         "certificate_id": spec.certificate_id,
         "gains": {name: dict(gains) for name, gains in spec.gains.items()},
         "gain_units": {name: dict(units) for name, units in spec.units.items()},
-        "warnings": [_found(item) for item in spec.cautions],
+        "warnings": [_finding_fields(item) for item in spec.cautions],
         "obligations": [_obligation(item) for item in spec.obligations],
     }
 
 
 def _obligation(item: Obligation) -> dict[str, Any]:
     head = {"rule": item.rule.id, "subject": item.subject, "status": str(item.status)}
-    return head | _found(item)
+    return head | _finding_fields(item)
 
 
-def _found(item: Obligation | Caution) -> dict[str, Any]:
+def _finding_fields(item: Obligation | Caution) -> dict[str, Any]:
     return {"message": item.message, "line": item.line, "column": item.column}

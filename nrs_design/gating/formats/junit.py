@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from nrs_design.gating.obligations import GateOutcome, Obligation, Status, from_here
+from nrs_design.gating.obligations import GateOutcome, Obligation, Status, relative_path
 from nrs_design.printable import printable
 
 
-def to_junit(outcome: GateOutcome) -> str:
+def format_junit(outcome: GateOutcome) -> str:
     """Return the XML document; it has no times, so that equal runs give equal files."""
-    every = [item for spec in outcome.specs for item in spec.obligations]
-    root = ElementTree.Element("testsuites", {"name": "nrs-design", **_counts(every)})
+    obligations = [item for spec in outcome.specs for item in spec.obligations]
+    root = ElementTree.Element("testsuites", {"name": "nrs-design", **_counts(obligations)})
     for spec in outcome.specs:
-        name = printable(from_here(spec.path))
+        name = printable(relative_path(spec.path))
         attributes = {"name": name, **_counts(spec.obligations)}
         suite = ElementTree.SubElement(root, "testsuite", attributes)
         for item in spec.obligations:

@@ -15,7 +15,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 FINGERPRINT = "nrsDesignObligation/v1"
 
 
-def to_sarif(outcome: GateOutcome) -> str:
+def format_sarif(outcome: GateOutcome) -> str:
     """Return a SARIF log with one run; only failures are results."""
     log = {
         "$schema": SCHEMA,

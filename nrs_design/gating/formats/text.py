@@ -18,7 +18,7 @@ SHORT_ID = 12
 _MARKUP = str.maketrans({c: f"&#{ord(c)};" for c in "\\`*_{}[]<>()#+-!|&~@:"})
 
 
-def to_text(outcome: GateOutcome) -> str:
+def format_text(outcome: GateOutcome) -> str:
     """Return the table, the failures worst first, and a line that sums up."""
     parts = [*_table([COLUMNS, *rows_of(outcome)]), *gain_lines(outcome)]
     if outcome.broken:
@@ -78,7 +78,7 @@ def _table(rows: Sequence[Sequence[str]]) -> list[str]:
 
 
 def _gains(spec: SpecOutcome) -> str:
-    listed = (
+    lines = (
         f"{printable(name)} "
         + ", ".join(
             f"{key} {_shortest(text)} {spec.units.get(name, {}).get(key, '')}".rstrip()
@@ -87,7 +87,7 @@ def _gains(spec: SpecOutcome) -> str:
         for name, gains in spec.gains.items()
         if gains
     )
-    return f"{printable(spec.path)}: {'; '.join(listed)}"
+    return f"{printable(spec.path)}: {'; '.join(lines)}"
 
 
 def _shortest(text: str) -> str:
@@ -114,12 +114,12 @@ def summary_line(outcome: GateOutcome) -> str:
     return f"{specs}: {counts}; {counted(total, 'obligation')}, {ending}"
 
 
-def to_markdown(outcome: GateOutcome) -> str:
+def format_markdown(outcome: GateOutcome) -> str:
     """Return the sum, what is not fulfilled or weaker than the base, and a row for each spec."""
     sign = "❌" if outcome.broken else "✅"
-    parts = [f"### {sign} nrs-design: {_plain(summary_line(outcome))}", ""]
+    parts = [f"### {sign} nrs-design: {_escape(summary_line(outcome))}", ""]
     if outcome.broken:
-        parts += [*(f"- {_plain(line_of(item))}" for item in outcome.findings), ""]
+        parts += [*(f"- {_escape(line_of(item))}" for item in outcome.findings), ""]
     if outcome.changes is not None:
         others = len(outcome.changes.others)
         parts += [f"Against the base: {outcome.changes.weaker} weaker, {others} other changes.", ""]
@@ -136,9 +136,9 @@ def to_markdown(outcome: GateOutcome) -> str:
 def _markdown_table(outcome: GateOutcome) -> list[str]:
     rows = [COLUMNS, ("---",) * len(COLUMNS)]
     lines = [f"| {' | '.join(row)} |" for row in rows]
-    return [*lines, *(f"| {' | '.join(map(_plain, row))} |" for row in rows_of(outcome))]
+    return [*lines, *(f"| {' | '.join(map(_escape, row))} |" for row in rows_of(outcome))]
 
 
-def _plain(text: str) -> str:
+def _escape(text: str) -> str:
     """Escape markup, links and mentions in a text of others."""
     return printable(text).translate(_MARKUP)

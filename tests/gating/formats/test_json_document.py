@@ -1,13 +1,13 @@
 import json
 from pathlib import Path
 
-from nrs_design.gating.formats.json_document import to_json
+from nrs_design.gating.formats.json_document import format_json
 from nrs_design.gating.obligations import Caution
 from tests.gating.formats.support import obligation, outcome_of
 
 
 def test_envelope(mixed):
-    document = json.loads(to_json(mixed))
+    document = json.loads(format_json(mixed))
     assert document["schema"] == "nrs-design/gate/1"
     assert document["passed"] is False
     assert document["notes"] == ["a note"]
@@ -26,5 +26,5 @@ def test_envelope(mixed):
 
 def test_warnings_of_each_spec():
     caution = Caution(Path("specs/a.nrs.yaml"), "Mt is on its bound", 3, 5)
-    (spec,) = json.loads(to_json(outcome_of(obligation(), cautions=(caution,))))["specs"]
+    (spec,) = json.loads(format_json(outcome_of(obligation(), cautions=(caution,))))["specs"]
     assert spec["warnings"] == [{"message": "Mt is on its bound", "line": 3, "column": 5}]

@@ -4,7 +4,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from nrs_design.gating.formats.sarif import fingerprint, to_sarif
+from nrs_design.gating.formats.sarif import fingerprint, format_sarif
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES
 from tests.gating.formats.support import HOSTILE, obligation, outcome_of
@@ -14,7 +14,7 @@ SARIF = json.loads(Path(__file__).with_name("sarif.json").read_text(encoding="ut
 
 
 def sarif_of(outcome):
-    log = json.loads(to_sarif(outcome))
+    log = json.loads(format_sarif(outcome))
     jsonschema.validate(log, SARIF)
     return log["runs"][0]
 

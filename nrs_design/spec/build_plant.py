@@ -50,7 +50,7 @@ class OperatingConditions:
     sampling: SamplingSpec | None  # The processor; None in continuous time
     # Shortest and longest time in s from a sample to the moment when its command takes effect.
     command_delay: tuple[Fraction, Fraction]
-    constant_delay_key: str | None  # Its key, if it is unknown but constant
+    constant_delay_key: str | None  # Key of an unknown, constant delay
     disturbances: Bounds | None  # None without declared disturbances
     largest_angle: Fraction | None  # Largest angle of the joint in rad, rounded up
     torque: Fraction  # Limit about the pivot in N m

@@ -97,14 +97,14 @@ class AbstractControllerSpec(SpecModel, stronger="neither"):
 
     # The motion loop integrates a velocity, and follows a position.
     commands: ClassVar[Command]
-    # True: it holds a force on its contact; false: it holds a position, whatever the contact.
+    # The controller holds a contact force, or it holds a position whatever the contact is.
     holds_force: ClassVar[bool] = False
     holds_position: ClassVar[bool] = False
-    # Whether it commands torques to a robot with a torque interface.
+    # True: the controller commands torques to a robot with a torque interface.
     makes_torques: ClassVar[bool] = False
-    # Whether its state stays in the command of other controllers and decays there.
+    # True: the state stays in the command of other controllers and decays there.
     is_leaky: ClassVar[bool] = False
-    # Whether its design limits the stiffness of contacts.
+    # True: the design limits the stiffness of contacts.
     limits_stiffness: ClassVar[bool] = False
     # Gains that `design.free` may name, each with the key that it replaces.
     freeable: ClassVar[Mapping[str, str | None]] = MappingProxyType({})

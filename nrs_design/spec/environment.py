@@ -66,7 +66,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec, stronger="holding"):
                     yield (name,), quantity.nominal.text
 
     def _with_arm(self) -> Iterator[tuple[Location, str]]:
-        """Yield what is rotational beside a lever arm."""
+        """Yield rotational parameters of an environment with a lever arm."""
         if self.lever_arm is not None:
             for name, quantity in self.ranges.items():
                 if not is_translational(quantity.nominal):

@@ -104,7 +104,7 @@ def _dwell(spec: Spec) -> str | None:
 
 
 def _sampled_dwell(spec: Spec) -> str | None:
-    """Return it beside samples, where rules about single contacts are refused as such."""
+    """Return the key of a dwell time of a sampled spec whose rules name no contacts."""
     counted = spec.sampling is not None and not spec.switching.names_contacts
     return _dwell(spec) if counted else None
 

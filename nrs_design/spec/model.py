@@ -19,15 +19,15 @@ from nrs_design.spec.check import Row, run_checks
 Stronger = Literal[
     "larger", "smaller", "wider", "farther", "holding", "whole", "neither", "unknown", "beside"
 ]
-# What is asked for where nothing is said: nothing; most, as what is said is assumed; or something
-# other, and nobody knows whether that is more.
+# Requirement of a missing key. nothing: no requirement. most: the strongest requirement, because
+# a declared value is an assumption. other: a requirement that has no order with declared values.
 Unsaid = Literal["nothing", "most", "other"]
 
 
 class Declared(NamedTuple):
     """The order of the values of a field, or the default order of a model's fields."""
 
-    # Words in a tuple go from the least on; None is where nothing is said.
+    # A tuple lists words from the weakest to the strongest; None stands for a missing key.
     stronger: Stronger | tuple[object, ...] | None = None
     unsaid: Unsaid | None = None
 
@@ -44,7 +44,7 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, arbitrary_types_allowed=True, defer_build=True
     )
 
-    # Of fields that say nothing of it themselves: what the first line of a class says.
+    # Default order of the fields, from the first line of the class; a field may declare another.
     declared: ClassVar[Declared] = Declared()
     # Checks across the fields of the model.
     checks: ClassVar[tuple[Row[Any], ...]] = ()

@@ -120,7 +120,7 @@ def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
 
 
 def _parts(model: SpecModel, at: tuple[str, ...], field: str) -> Iterator[_Asked]:
-    # They are what the key above says.
+    # Ends of a range belong to the quantity of the parent key.
     ends = isinstance(model, RangedQuantity | GainSpec | Bounds)
     for key in type(model).model_fields:
         value = getattr(model, key)

@@ -93,7 +93,7 @@ def power_between(base: Fraction, exponent: Fraction) -> tuple[Fraction, Fractio
     if base <= 0:
         raise ValueError(f"{base} has no power with a rational exponent")
     q, power = exponent.denominator, base**exponent.numerator
-    # How large the power is, is asked of a float; it decides how near the bounds are, no more.
+    # A float estimates the magnitude; it decides only how tight the bounds are.
     size = float(exponent) * (log10(base.numerator) - log10(base.denominator))
     unit = Fraction(10) ** (floor(size) - DIGITS)
     scaled = power / unit**q

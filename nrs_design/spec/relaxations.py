@@ -30,8 +30,8 @@ PARTS = 64
 # Number of steps from the longest tried dwell time down to the shortest, and per factor of two.
 DWELLS = 256
 PER_OCTAVE = 16
-# The longest one over the time in which the slowest mode decays to 1/e, at least; or over the one
-# that is declared, which is reached in so many steps.
+# Least ratio of the longest tried dwell time to the time constant of the slowest mode, up to
+# LONGEST_DWELL. With a declared dwell time: ratio to this time, which is step LONGER.
 TIMES = 64
 LONGER = PER_OCTAVE * 6
 DWELL_DIGITS = 3
@@ -49,8 +49,8 @@ class RelaxationSteps:
 
     word: str  # Before what is proved: up to, down to, within, with, without
     value_at: Callable[[int], Data | None]  # Value in the spec at a step; None: the key is removed
-    label_at: Callable[[int], str]  # The relaxed value in words
-    requested: str  # Declared value in words
+    label_at: Callable[[int], str]  # Text of the relaxed value
+    requested: str  # Text of the declared value
     size: int = 0  # Where nothing lies between, 0
 
 
@@ -59,11 +59,11 @@ class SpecRelaxation:
     """A line of a spec, and its possible relaxations."""
 
     at: Keys  # The place
-    weakest: RelaxationSteps  # Step 0 asks for the least
+    weakest: RelaxationSteps  # Its step 0 is the weakest
     # Ask for more than that at 0 already; the first one that is proved there is looked at further.
     alternatives: tuple[RelaxationSteps, ...] = ()
-    # Whether what is proved then is about another loop, or takes more for granted, rather than
-    # about less of what was asked for.
+    # True: a proof holds for another loop or needs more assumptions. False: a proof covers a part
+    # of the declared requirement.
     changes_model: bool = False
 
     def edit(self, form: RelaxationSteps, step: int) -> Edit:
@@ -164,7 +164,7 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[SpecRelaxation]:
     if spec.idle_states is not None and spec.idle_states.reset:
         yield _without(("idle_states", "reset"), changes_model=True)
     if spec.sensor is not None and spec.sensor.filter is not None:
-        # A sensor without other keys is removed as a whole.
+        # A sensor that declares only a filter is removed as a whole.
         alone = spec.sensor.model_fields_set == {"filter"}
         yield _without(("sensor",) if alone else ("sensor", "filter"), changes_model=True)
     for key in ("outer_period", "misses"):

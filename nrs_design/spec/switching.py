@@ -62,7 +62,7 @@ class DwellObstacle:
     remedy: str
 
 
-# One for all modes, or one by name; modes that are not named have none.
+# One time for all modes, or times by name of mode; modes without an entry have no dwell time.
 DwellTimes = DwellTime | dict[str, DwellTime]
 
 

@@ -37,7 +37,7 @@ _STRANGE = {
     "³": "write ^3 for a cube",
     **dict.fromkeys("µμ", "write the number in the unit without the prefix"),
 }
-# Units by other words, beside units in other capitals.
+# Other spellings of units; spellings with other capitals are not listed.
 _OTHER_WORDS = (
     "Nm=N*m Nms=N*m*s kgm=kg*m sec=s second=s seconds=s degree=deg degrees=deg radian=rad "
     "radians=rad newton=N meter=m volt=V ampere=A PWM=counts"

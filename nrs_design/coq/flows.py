@@ -53,8 +53,8 @@ class FlowStatement(AbstractStatement):
             form = evidence.inequality(step, a, b, system)
             if evidence.degree > 1:
                 form = add(form, next(added))
-            keeps = 2 * evidence.degree * evidence.rate
-            yield step.source, form, (keeps * step.over).denominator * step.over
+            share = 2 * evidence.degree * evidence.rate
+            yield step.source, form, (share * step.over).denominator * step.over
 
 
 def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
@@ -62,18 +62,18 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     flows, definitions = FlowStatement(system, evidence), Definitions()
     modes, others = flows.define_modes(definitions)
     _define_form(flows, definitions)
-    gives, free_gives = _define_witnesses(flows, definitions)
+    witnesses, free_gives = _define_witnesses(flows, definitions)
     rate, factor = evidence.rate, factor_of(evidence.nodes[0].form)
     shape = f"{system.order} {evidence.degree} {rate.numerator} {rate.denominator} basis form"
-    cut = f"{str(flows.lost).lower()}\n    {modes}\n    {others}"
-    rest = "_ " * 15
+    arguments = f"{str(flows.lost).lower()}\n    {modes}\n    {others}"
+    holes = "_ " * 15
     return Theorem(
         LIBRARY,
         definitions.texts,
-        f"flows_fall {shape} multipliers {factor} {cut}\n"
-        f"    all_terms free_terms {gives} {free_gives}",
-        f"decays {shape} {cut}\n  /\\ is_definite basis form {factor}",
-        f"conj (decays_sound {rest}checked eq_refl) (definite_sound {rest}checked)",
+        f"flows_fall {shape} multipliers {factor} {arguments}\n"
+        f"    all_terms free_terms {witnesses} {free_gives}",
+        f"decays {shape} {arguments}\n  /\\ is_definite basis form {factor}",
+        f"conj (decays_sound {holes}checked eq_refl) (definite_sound {holes}checked)",
         tuple(system.states[i] for i in flows.order),
     )
 

@@ -22,12 +22,12 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
 
-STAYS = ("forms", "jumps", "stays")
+STAY_LIBRARY = ("forms", "jumps", "stays")
 SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
 # Terms of the series in each piece of a stay, margin for remainder and rounding, and the scale.
-TERMS, MORE, SCALE = 16, 2**40, 2**60
-INSIDE = "what happens within a stay of a mode that must be left, between its switches"
-MIXED = "averages of modes, such as values between the corners of ranges"
+TERMS, MARGIN, SCALE = 16, 2**40, 2**60
+INTERIOR = "what happens within a stay of a mode that must be left, between its switches"
+AVERAGES = "averages of modes, such as values between the corners of ranges"
 
 
 def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
@@ -40,29 +40,29 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     places = listed(names[mode.name] for mode in system.modes)
     definitions.define("switches", f"{_switches(system, flows=flows)} : list switch")
     factor = max(factor_of(node.form) for node in evidence.nodes)
-    rate, around = evidence.rate, f"{factor}\n    {places}\n    switches"
-    known = f"{rate.numerator} {rate.denominator} {around}"
+    rate, terms = evidence.rate, f"{factor}\n    {places}\n    switches"
+    known = f"{rate.numerator} {rate.denominator} {terms}"
     share = f"({rate.numerator} / {rate.denominator})%R"
     sound = "switches" if flows else "stays"
     leaving = (evidence.stays or Stays()).leaving
     return Theorem(
-        SWITCHES if flows else STAYS,
+        SWITCHES if flows else STAY_LIBRARY,
         definitions.texts,
         f"{sound}_fall {known}",
-        f"decays_by_mode {known}" if flows else f"decays_by_mode {around}\n    {share}",
+        f"decays_by_mode {known}" if flows else f"decays_by_mode {terms}\n    {share}",
         f"{sound}_sound _ _ _ _ _ checked",
         system.states,
-        (MIXED, INSIDE) if leaving else (MIXED,),
+        (AVERAGES, INTERIOR) if leaving else (AVERAGES,),
     )
 
 
 def _stepping(system: SwitchedSystem, evidence: FormsOnGraph) -> dict[str, str]:
     """Return the modes in discrete time."""
-    forms, stays = dict(evidence.nodes), system.stays()
+    forms, durations = dict(evidence.nodes), system.stays()
     leaving = (evidence.stays or Stays()).leaving
     found = {}
     for mode in system.modes:
-        stay = stays[mode.name]
+        stay = durations[mode.name]
         longest = "None" if stay.longest is None else f"(Some {stay.longest}%nat)"
         left = "true" if mode.name in leaving else "false"
         found[mode.name] = (
@@ -105,7 +105,7 @@ def _bridge(mode: Mode, stay: Fraction) -> str:
     """Return how a stay is followed: in pieces in which the mode does not move far."""
     size = max(sum(map(abs, row)) for row in mode.A.numerators)
     pieces = ceil(2 * stay * Fraction(size, mode.A.denominator)) or 1
-    return f" (Bridge {pieces} {TERMS} {MORE} {SCALE})"
+    return f" (Bridge {pieces} {TERMS} {MARGIN} {SCALE})"
 
 
 def _linear(A: RationalMatrix) -> str:

@@ -34,13 +34,13 @@ class SampledStatement(AbstractStatement):
         and the bounds are integers.
         """
         before = self.order[1:] if k >= len(self.system.modes) else self.order
-        rounded = self.system.roundings if self.evidence.covers_rounding else ()
+        roundings = self.system.roundings if self.evidence.covers_rounding else ()
         parts = [([row[j] for row in mode.A.numerators], mode.A.denominator) for j in before]
-        added = (item.columns[k] for item in rounded)
+        added = (item.columns[k] for item in roundings)
         parts += [([row[0] for row in M.numerators], M.denominator) for M in added]
         bounds = [
             ([item.rows[k].numerators[0][j] for j in before], item.rows[k].denominator)
-            for item in rounded
+            for item in roundings
         ]
         units = [
             lcm(

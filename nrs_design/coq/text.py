@@ -33,8 +33,8 @@ class Definitions:
 
     def define(self, name: str, text: str, remark: str = "") -> str:
         """Define a name, and return it."""
-        said = f"(* {in_comment(remark)} *)\n" if remark else ""
-        self.texts.append(f"{said}Definition {name} := {text}.\n")
+        comment = f"(* {in_comment(remark)} *)\n" if remark else ""
+        self.texts.append(f"{comment}Definition {name} := {text}.\n")
         return name
 
     def row(self, entries: Sequence[int]) -> str:
@@ -72,10 +72,10 @@ def identifiers(names: Iterable[str]) -> dict[str, str]:
     """Return a name of Coq for each name of a mode; no two are the same."""
     found: dict[str, str] = {}
     for name in names:
-        plain = "mode_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
-        taken = set(found.values())
-        count = next(k for k in range(1, len(taken) + 2) if _numbered(plain, k) not in taken)
-        found[name] = _numbered(plain, count)
+        stem = "mode_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
+        values = set(found.values())
+        count = next(k for k in range(1, len(values) + 2) if _numbered(stem, k) not in values)
+        found[name] = _numbered(stem, count)
     return found
 
 
@@ -134,8 +134,8 @@ class AbstractStatement(ABC):
         names = identifiers(mode.name for mode in (*touching, *flying))
         for k, mode in enumerate((*touching, *flying)):
             definitions.define(names[mode.name], self.mode(k, mode, definitions), mode.name)
-        each = (listed(names[mode.name] for mode in part) for part in (touching, flying))
-        return next(each), next(each)
+        texts = (listed(names[mode.name] for mode in part) for part in (touching, flying))
+        return next(texts), next(texts)
 
 
 @dataclass(frozen=True, slots=True)

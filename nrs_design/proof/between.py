@@ -40,11 +40,11 @@ def between(
             for i, row in enumerate(mode.A.fractions())
         ]
         for number, changes in enumerate(saturation.changes(k, held[k], len(items))):
-            moved = _plus(whole, columns, changes)
-            A = RationalMatrix.from_rows([row[:n] for row in moved])
+            changed_rows = _plus(whole, columns, changes)
+            A = RationalMatrix.from_rows([row[:n] for row in changed_rows])
             modes.append(Mode(f"{mode.name}, {number}", A))
             for j, (item, (acts, sizes)) in enumerate(zip(items, errors, strict=True)):
-                acts.append(RationalMatrix.from_rows([[row[n + j]] for row in moved]))
+                acts.append(RationalMatrix.from_rows([[row[n + j]] for row in changed_rows]))
                 sizes.append(_cut(item.rows[k], n))
     count = len(modes) // len(system.every_mode) * len(system.modes)
     contact = system.contact
@@ -70,7 +70,7 @@ def _plus(rows: Rows, columns: Rows, changes: Rows) -> Rows:
     moved = [list(row) for row in rows]
     for column, change in zip(columns, changes, strict=True):
         for row, c in zip(moved, column, strict=True):
-            row[:] = [own + c * more for own, more in zip(row, change, strict=True)]
+            row[:] = [entry + c * difference for entry, difference in zip(row, change, strict=True)]
     return moved
 
 

@@ -27,10 +27,10 @@ def upper(number: Fraction, digits: int = DIGITS) -> str:
 
     One that is a little below 1 stays below it, as in ``1 - 2.5e-22``.
     """
-    rounded = _exact(number) or _round(number, digits, ROUND_CEILING)
-    if number < 1 <= Decimal(rounded):
+    text = _exact(number) or _round(number, digits, ROUND_CEILING)
+    if number < 1 <= Decimal(text):
         return f"1 - {lower(1 - number, digits)}"
-    return rounded
+    return text
 
 
 def at_least(number: Fraction, unit: str = "") -> str:

@@ -16,8 +16,12 @@ Leads: TypeAlias = tuple[int | None, ...]
 def on_turn(system: SwitchedSystem, clock: Clock, kind: int) -> SwitchedSystem:
     """Return a system whose modes take turns with the modes of one kind alone."""
     names = [mode.name for mode in system.every_mode]
-    kept = (name for name, own in zip(names, clock.kind_of(names), strict=True) if own == kind)
-    return system.only(frozenset(kept))
+    selection = (
+        name
+        for name, mode_kind in zip(names, clock.kind_of(names), strict=True)
+        if mode_kind == kind
+    )
+    return system.only(frozenset(selection))
 
 
 def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
@@ -28,16 +32,16 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     for ever.
     """
     states = range(clock.length)
-    once = [tuple(clock.after(k, kind) for k in states) for kind in clock.kinds]
+    maps = [tuple(clock.after(k, kind) for k in states) for kind in clock.kinds]
     whole: Leads = tuple(states)
     for kind, (_, count) in zip(clock.kind_of(name for name, _ in steps), steps, strict=True):
-        whole = _then(whole, _repeated(once[kind], int(count)))
+        whole = _then(whole, _repeated(maps[kind], int(count)))
     return any(state is not None for state in _repeated(whole, clock.length))
 
 
-def _then(one: Leads, other: Leads) -> Leads:
+def _then(first: Leads, second: Leads) -> Leads:
     """Return the composition of two maps, the first one first."""
-    return tuple(None if state is None else other[state] for state in one)
+    return tuple(None if state is None else second[state] for state in first)
 
 
 def _repeated(leads: Leads, count: int) -> Leads:

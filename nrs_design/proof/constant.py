@@ -17,14 +17,14 @@ from nrs_design.proof.text import exact_text
 
 def find_odd_shares(switching: Switching, shares: Sequence[Fraction]) -> str | None:
     """TRUSTED: say why shares are not those of a value that constant parameters attain, or None."""
-    sets, named = switching.fixed_ends, switching.fixed_parameters
+    sets, parameters = switching.fixed_ends, switching.fixed_parameters
     if not sets or not shares:
         return "no parameter is constant, or no share is given"
     if any(len(corners) != 2 ** len(shares) for corners in sets):
         return "there is not one share for each constant parameter, or values are enclosed only"
-    if any(parameter.enclosed for parameter in named):
+    if any(parameter.enclosed for parameter in parameters):
         return "values are enclosed only"
-    if named and len(named) != len(shares):
+    if parameters and len(parameters) != len(shares):
         return "there is not one share for each constant parameter"
     return None if all(0 <= s <= 1 for s in shares) else "a share is not between 0 and 1"
 
@@ -34,7 +34,7 @@ def corner_weights(shares: Sequence[Fraction]) -> list[Fraction]:
 
     A share is how far a parameter is on the way from its low to its high end.
     """
-    return [prod(at, start=Fraction(1)) for at in product(*((1 - s, s) for s in shares))]
+    return [prod(factors, start=Fraction(1)) for factors in product(*((1 - s, s) for s in shares))]
 
 
 def system_at(system: SwitchedSystem, shares: Sequence[Fraction]) -> SwitchedSystem:
@@ -57,15 +57,15 @@ def system_at(system: SwitchedSystem, shares: Sequence[Fraction]) -> SwitchedSys
             for row in zip(*(matrices[corner] for corner in corners), strict=True)
         ]
         modes.append(Mode(name, RationalMatrix.from_rows(rows)))
-    allowed = system.switching.transitions
+    switches = system.switching.transitions
     transitions = None
-    if allowed is not None:
-        listed = frozenset(allowed)
+    if switches is not None:
+        pairs = frozenset(switches)
         transitions = tuple(
             (source, target)
             for source, *ends in sets
             for target, *others in sets
-            if source != target and listed.issuperset(zip(ends, others, strict=True))
+            if source != target and pairs.issuperset(zip(ends, others, strict=True))
         )
     own = {name for name, _ in system.switching.stays}
     switching = replace(

@@ -164,16 +164,16 @@ def lower_integers(form: Any) -> IntegerMatrix:
     shift = MIDPOINT_BITS + 1 - max((_log2(mid) for mid in mids.values() if mid[0]), default=1)
     # Rounding costs a midpoint less than one; and both it and its radius may have been taken for
     # zero. Slacks are counted in units of their own.
-    lost = (1 << GUARD_BITS) + _ceil((2, -RANGE_LOG2), shift + GUARD_BITS)
-    slacks = {k: _ceil(radius, shift + GUARD_BITS) + lost for k, radius in radii.items()}
+    margin = (1 << GUARD_BITS) + _ceil((2, -RANGE_LOG2), shift + GUARD_BITS)
+    slacks = {k: _ceil(radius, shift + GUARD_BITS) + margin for k, radius in radii.items()}
     weights = [(_log2(mids[k, k]) - 1) // 2 if mids[k, k][0] > 0 else 0 for k in range(n)]
     lower, sums = [[0] * n for _ in range(n)], [0] * n
     for (i, j), slack in slacks.items():
         lower[i][j] = lower[j][i] = _floor(mids[i, j], shift)
-        apart = weights[i] - weights[j]
-        sums[i] += _ceil((slack, apart), 0)
+        difference = weights[i] - weights[j]
+        sums[i] += _ceil((slack, difference), 0)
         if i != j:
-            sums[j] += _ceil((slack, -apart), 0)
+            sums[j] += _ceil((slack, -difference), 0)
     for k, total in enumerate(sums):
         lower[k][k] -= (total >> GUARD_BITS) + 1
     return lower
@@ -197,8 +197,8 @@ def _log2(number: _Binary) -> int:
 
 def _floor(number: _Binary, shift: int) -> int:
     """Return the largest integer that is not above a number times two to a power."""
-    by = number[1] + shift
-    return number[0] << by if by >= 0 else number[0] >> -by
+    exponent = number[1] + shift
+    return number[0] << exponent if exponent >= 0 else number[0] >> -exponent
 
 
 def _ceil(number: _Binary, shift: int) -> int:

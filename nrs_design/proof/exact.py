@@ -94,13 +94,13 @@ def is_positive_definite(M: IntegerMatrix) -> bool:
     entries = [M[i][j] for k, i in enumerate(states) for j in states[k:]]
     order, previous = len(M), 1
     while order:
-        pivot, row, rest = entries[0], entries[1:order], entries[order:]
+        pivot, row, tail = entries[0], entries[1:order], entries[order:]
         if pivot <= 0:
             return False
         # In the order of what is left: every entry of the row with itself and all after it.
         pairs = combinations_with_replacement(row, 2)
         entries = [
-            (pivot * entry - a * b) // previous for entry, (a, b) in zip(rest, pairs, strict=True)
+            (pivot * entry - a * b) // previous for entry, (a, b) in zip(tail, pairs, strict=True)
         ]
         previous, order = pivot, order - 1
     return True
@@ -172,14 +172,14 @@ def is_hurwitz_polynomial(coefficients: Sequence[int]) -> bool:
     """
     if coefficients[0] < 0:
         coefficients = [-c for c in coefficients]
-    above, row = list(coefficients[0::2]), list(coefficients[1::2])
+    upper, row = list(coefficients[0::2]), list(coefficients[1::2])
     for _ in range(len(coefficients) - 1):
         if row[0] <= 0:
             return False
-        shifted = row[1:] + [0] * (len(above) - len(row))
-        below = [row[0] * a - above[0] * r for a, r in zip(above[1:], shifted, strict=True)]
-        divisor = gcd(*below) or 1
-        above, row = row, [entry // divisor for entry in below]
+        shifted = row[1:] + [0] * (len(upper) - len(row))
+        lower = [row[0] * a - upper[0] * r for a, r in zip(upper[1:], shifted, strict=True)]
+        divisor = gcd(*lower) or 1
+        upper, row = row, [entry // divisor for entry in lower]
     return True
 
 
@@ -198,8 +198,8 @@ def is_schur(N: IntegerMatrix, denominator: int) -> bool:
     # Horner's scheme on ``sum c_k (d (1 + s))^(n - k) (1 - s)^k``.
     mapped, power = [1], [1]
     for c in characteristic_polynomial(N)[1:]:
-        power, moved = _times_binomial(power, -1), _times_binomial(mapped, 1)
-        mapped = [denominator * a + c * b for a, b in zip(moved, power, strict=True)]
+        power, product = _times_binomial(power, -1), _times_binomial(mapped, 1)
+        mapped = [denominator * a + c * b for a, b in zip(product, power, strict=True)]
     return mapped[0] != 0 and is_hurwitz_polynomial(mapped)
 
 

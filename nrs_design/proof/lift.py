@@ -19,9 +19,9 @@ def monomials(variables: int, degree: int) -> tuple[Monomial, ...]:
     if variables == 1:
         return ((degree,),)
     return tuple(
-        (first, *rest)
+        (first, *tail)
         for first in range(degree, -1, -1)
-        for rest in monomials(variables - 1, degree - first)
+        for tail in monomials(variables - 1, degree - first)
     )
 
 
@@ -33,13 +33,13 @@ def derivative_lift(N: IntegerMatrix, degree: int) -> list[list[int]]:
     n = len(N)
     basis = monomials(n, degree)
     index = {monomial: k for k, monomial in enumerate(basis)}
-    lifted = [[0] * len(basis) for _ in basis]
+    matrix = [[0] * len(basis) for _ in basis]
     for k, monomial in enumerate(basis):
         for i in range(n):
             for j in range(n):
                 if monomial[i] and N[i][j]:
-                    lifted[k][index[_move(monomial, i, j)]] += monomial[i] * N[i][j]
-    return lifted
+                    matrix[k][index[_move(monomial, i, j)]] += monomial[i] * N[i][j]
+    return matrix
 
 
 def power_lift(N: IntegerMatrix, degree: int) -> list[list[int]]:

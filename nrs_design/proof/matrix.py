@@ -38,9 +38,9 @@ class RationalMatrix:
         OverflowError if an entry is no number, or not finite.
         """
         ratios = [[_integer_ratio(entry) for entry in row] for row in rows]
-        denominator = lcm(*(below for row in ratios for _, below in row))
+        denominator = lcm(*(divisor for row in ratios for _, divisor in row))
         numerators = tuple(
-            tuple(above * (denominator // below) for above, below in row) for row in ratios
+            tuple(numerator * (denominator // below) for numerator, below in row) for row in ratios
         )
         return cls(numerators, denominator)
 
@@ -51,7 +51,7 @@ class RationalMatrix:
 
     @property
     def is_well_formed(self) -> bool:
-        """Whether it has rows of one length, and its denominator keeps the signs of the rest."""
+        """Whether all rows have one length and the denominator is positive."""
         return self.denominator > 0 and len(set(map(len, self.numerators))) == 1
 
     def fractions(self) -> list[list[Fraction]]:

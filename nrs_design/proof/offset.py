@@ -44,22 +44,24 @@ def offset_steps(
         tuple(map(system.channels.index, channels)), (Fraction(0),) * len(channels), rounding
     )
     for step in steps_of(_with_one(system), acting, grain, lost=True):
-        at_zero = step.source == FREE and step.target == CONTACT and len(step.rows) <= system.order
-        if step.time and not at_zero:
+        touchdown = (
+            step.source == FREE and step.target == CONTACT and len(step.rows) <= system.order
+        )
+        if step.time and not touchdown:
             yield replace(step, crossings=(), products=tuple(_products(step, len(channels))))
 
 
 def _products(step: Step, channels: int) -> Iterator[tuple[str, Row, Row]]:
-    """Yield what is known: its name, and the two factors, none of them negative."""
+    """Yield every known product: its name, and two factors that are not negative."""
     n, units = step.states, step.units
     pairs = [
         [_row(step, {0: units[0], k: sign * units[k]}) for sign in (1, -1)]
         for k in range(n, n + channels)
     ]
-    within = [side for pair in pairs for side in pair]
+    sides = [side for pair in pairs for side in pair]
     deflected = [_row(step, {n - 1: units[n - 1]})] if step.source == CONTACT else []
-    own = [*pairs, *([deflected[0], side] for side in within if deflected)]
-    for i, (left, right) in enumerate(own):
+    factors = [*pairs, *([deflected[0], side] for side in sides if deflected)]
+    for i, (left, right) in enumerate(factors):
         yield f"{step.where}: {i}", left, right
     # What crosses the surface, or pulls, is not positive; what stays in contact is.
     signs: list[tuple[str, Row]] = []
@@ -68,7 +70,7 @@ def _products(step: Step, channels: int) -> Iterator[tuple[str, Row, Row]]:
         signs.append(("after", step.rows[-1]))
     kind = step.where.removesuffix(step.mode)
     for name, row in signs:
-        for i, other in enumerate((*deflected, *within)):
+        for i, other in enumerate((*deflected, *sides)):
             yield f"{kind}{name}: {i}", row, other
 
 
@@ -78,10 +80,10 @@ def _row(step: Step, entries: dict[int, int]) -> Row:
 
 def _with_one(system: SwitchedSystem) -> SwitchedSystem:
     """Return the system with a state in front that is one, and disturbances up to one."""
-    contact, stays = system.contact, int(system.time is Time.DISCRETE)
+    contact, corner = system.contact, int(system.time is Time.DISCRETE)
 
     def moved(modes: Sequence[Mode]) -> tuple[Mode, ...]:
-        return tuple(replace(mode, A=_bordered(mode.A, stays)) for mode in modes)
+        return tuple(replace(mode, A=_bordered(mode.A, corner)) for mode in modes)
 
     def below(columns: Sequence[RationalMatrix], size: Fraction | int = 1) -> Matrices:
         return tuple(
@@ -95,8 +97,8 @@ def _with_one(system: SwitchedSystem) -> SwitchedSystem:
         return RationalMatrix.from_rows([(Fraction(0), *scaled)])
 
     if contact is not None:
-        pulls = (RationalMatrix(((0, *q.numerators[0]),), q.denominator) for q in contact.pulls)
-        contact = replace(contact, free=moved(contact.free), pulls=tuple(pulls))
+        pull_rows = (RationalMatrix(((0, *q.numerators[0]),), q.denominator) for q in contact.pulls)
+        contact = replace(contact, free=moved(contact.free), pulls=tuple(pull_rows))
     return replace(
         system,
         states=("one", *system.states),

@@ -21,10 +21,10 @@ class CutOff:
     Its argument is ``a = q (x, s_1, ..., s_j)``, where the s_i are the signals before it.
     """
 
-    # What it is, such as ``velocity command`` in ``rad/s``.
+    # Quantity, such as ``velocity command`` in ``rad/s``.
     name: str
     unit: str
-    limit: Fraction  # Where it is cut off, both ways
+    limit: Fraction  # Largest size of the signal
     # Shape (n, 1). What it does to the state, in every mode and after them in the free modes.
     columns: tuple[RationalMatrix, ...]
     # Shape (1, n + number of signals before it). The q in the same order; in free motion nothing in
@@ -39,7 +39,7 @@ class CutOff:
 class Start:
     """States that a motion begins in: a size times any mixture of some of them."""
 
-    # What the size is of, such as ``contact force`` in ``N*m``.
+    # Quantity of the size, such as ``contact force`` in ``N*m``.
     name: str
     unit: str
     # Shape (n, 1). At the size one, at the corners of the ranges.
@@ -83,10 +83,10 @@ class Saturation:
         wide = [[*h, *(ZERO,) * errors] for h in held]
         linear = self._signals(k, wide, errors, (False,) * len(self.signals))
         for replaced in product((False, True), repeat=len(self.signals)):
-            taken = self._signals(k, wide, errors, replaced)
+            values = self._signals(k, wide, errors, replaced)
             yield [
                 [new - old for new, old in zip(*rows, strict=True)]
-                for rows in zip(taken, linear, strict=True)
+                for rows in zip(values, linear, strict=True)
             ]
 
     def _signals(

@@ -88,19 +88,19 @@ class EnclosedStep:
             left = E.transpose() * G * E
             if half == 0:
                 return lower_integers(F - left)
-            T, C, near, *ways = _own_coordinates(B, tuple(map(tuple, before)), half)
+            T, C, motion, *ways = _own_coordinates(B, tuple(map(tuple, before)), half)
             F, left = (T.transpose() * Q * T for Q in (F, left))
-            once = C.transpose() * left + left * C
-            twice = near.transpose() * (C.transpose() * once + once * C) * near
-            F += twice * between_zero_and(half**2 / 2)
+            slope = C.transpose() * left + left * C
+            curvature = motion.transpose() * (C.transpose() * slope + slope * C) * motion
+            F += curvature * between_zero_and(half**2 / 2)
             ends = (lower_integers(F - way.transpose() * left * way) for way in ways)
             return _in_blocks(*ends)
 
 
-def _in_blocks(one: IntegerMatrix, other: IntegerMatrix) -> IntegerMatrix:
+def _in_blocks(first: IntegerMatrix, second: IntegerMatrix) -> IntegerMatrix:
     """Return the form of two forms, each on states of its own."""
-    nothing = [0] * len(one)
-    return [[*row, *nothing] for row in one] + [[*nothing, *row] for row in other]
+    nothing = [0] * len(first)
+    return [[*row, *nothing] for row in first] + [[*nothing, *row] for row in second]
 
 
 @lru_cache(maxsize=64)
@@ -132,19 +132,19 @@ def steps_of_stays(
     `find_odd_stays` finds nothing; `grain` is the unit that those of a map of so many steps are
     multiples of.
     """
-    flows, every = system.time is Time.CONTINUOUS, system.stays()
+    flows, durations = system.time is Time.CONTINUOUS, system.stays()
     for mode in system.modes:
         if mode.name not in stays.leaving:
-            where = f"in mode {mode.name}"
+            location = f"in mode {mode.name}"
             if flows:
-                yield flow_step(where, mode.name, mode.name, mode.A)
+                yield flow_step(location, mode.name, mode.name, mode.A)
             else:
-                yield map_step(where, mode.name, (mode.name, mode.name), mode.A, grain(1))
+                yield map_step(location, mode.name, (mode.name, mode.name), mode.A, grain(1))
     for edge in system.edges():
-        name, stay = edge.source.name, every[edge.source.name]
+        name, stay = edge.source.name, durations[edge.source.name]
         left = name in stays.leaving
-        how = "some stay" if left else "the dwell time"
-        where = f"after {how}, from {name} to {edge.target.name}"
+        duration = "some stay" if left else "the dwell time"
+        location = f"after {duration}, from {name} to {edge.target.name}"
         if not flows:
             last = stay.longest if left and stay.longest is not None else stay.shortest
             for count in range(int(stay.shortest), int(last) + 1):
@@ -152,18 +152,18 @@ def steps_of_stays(
                 if edge.map is not None:
                     rows = rational_product(edge.map.fractions(), jump.fractions())
                     jump = RationalMatrix.from_rows(rows)
-                yield map_step(where, name, (name, edge.target.name), jump, grain(count), count)
+                yield map_step(location, name, (name, edge.target.name), jump, grain(count), count)
         elif left and stay.longest is not None:
             width = (stay.longest - stay.shortest) / stays.pieces
             for k in range(stays.pieces):
                 begin = stay.shortest + k * width
-                yield EnclosedStep(where, edge, begin, begin + width)
+                yield EnclosedStep(location, edge, begin, begin + width)
         elif stay.shortest > 0:
-            yield EnclosedStep(where, edge, stay.shortest, stay.shortest)
+            yield EnclosedStep(location, edge, stay.shortest, stay.shortest)
         else:
             jump = edge.map or identity(edge.source.A.shape[0])
-            at_once = f"at the switch from {name} to {edge.target.name}"
-            yield map_step(at_once, name, (name, edge.target.name), jump, 1, time=0)
+            moment = f"at the switch from {name} to {edge.target.name}"
+            yield map_step(moment, name, (name, edge.target.name), jump, 1, time=0)
 
 
 def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int, degree: int = 1) -> str | None:
@@ -201,8 +201,8 @@ def _find_odd_switch(system: SwitchedSystem) -> str | None:
     switches = count * (count - 1) if transitions is None else len(transitions)
     switches += len(system.switching.resets)
     # To find those that are allowed, all pairs are looked at.
-    looked = count**2 // 16
-    if max(switches, looked) > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
+    pairs = count**2 // 16
+    if max(switches, pairs) > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
         return "there are too many switches to check"
     for edge in system.edges():
         given = edge.source.A.shape if edge.map is None else edge.map.shape
@@ -230,7 +230,7 @@ def _power_is_too_large(
     return largest * bits > MAX_POWER_BITS or largest * work > MAX_WORK or total * work > MAX_WORK
 
 
-# Asked for at every switch from a mode.
+# Cached, as every switch from a mode needs it.
 @lru_cache(maxsize=256)
 def power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     """Return the power of a square matrix."""
@@ -242,7 +242,7 @@ def power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     return result
 
 
-# Asked for at every length of a stay.
+# Cached, as every length of a stay needs it.
 @lru_cache(maxsize=256)
 def shifted(A: RationalMatrix, rate: Fraction) -> RationalMatrix:
     """Return ``A + rate I``."""

@@ -41,7 +41,7 @@ from nrs_design.proof.system import SwitchedSystem
 # is positive, and in free motion it is not.
 KEPT, CONTACT, FREE = "kept", "contact", "free"
 
-# What facts are called; numbers count from one, in the order of the system.
+# Names of facts; numbers count from one, in the order of the system.
 ROUNDING, LOST, PULL = "rounding", "lost", "pull"
 
 Row = Sequence[int]
@@ -49,7 +49,7 @@ Row = Sequence[int]
 
 @dataclass(frozen=True, slots=True)
 class Acting:
-    """What acts on the state during a step, beside the mode."""
+    """Disturbances and roundings that act on the state during a step."""
 
     channels: tuple[int, ...] = ()  # Disturbances, by their number in the system
     weights: tuple[Fraction, ...] = ()  # One for each of them
@@ -73,8 +73,8 @@ class Step:
     mode: str  # That is in force
     source: str  # The place before
     target: str  # The place after
-    states: int  # How many entries of z are the state before
-    units: Row  # Of the entries of z
+    states: int  # Number of states before the step; they are first in z
+    units: Row  # Units of the entries of z
     rows: IntegerMatrix  # M in these units, times `over`
     over: int = 1  # One for a map
     # Name, index of e in z, q in these units, and a positive denominator of q (one for a map).
@@ -83,7 +83,7 @@ class Step:
     crossings: tuple[tuple[str, Row, int], ...] = ()
     # Name, l and r in these units, without a denominator; the form has ``-2 m (l z) (r z)``.
     products: tuple[tuple[str, Row, Row], ...] = ()
-    weights: tuple[Fraction, ...] = ()  # Of the disturbances, which are next to the state in z
+    weights: tuple[Fraction, ...] = ()  # Weights of the disturbances, which follow the state in z
     is_flow: bool = False
     time: int = 1  # Steps that a map takes; a switch at once takes none
 
@@ -114,17 +114,17 @@ class Step:
         else:
             image = congruence(self.rows, after, multiply)
             form, factor = add(self._left(before, keeps, log2), image, -1), 1
-        for name, i, q, below in self.errors:
+        for name, i, q, divisor in self.errors:
             m = multiplier(name)
             form[i][i] += factor * m * self.units[i] ** 2
-            weight = m * (factor // below**2)
+            weight = m * (factor // divisor**2)
             entries = [(j, entry) for j, entry in enumerate(q) if entry]
             for a, left in entries:
                 for b, right in entries:
                     form[a][b] -= weight * left * right
         last = self.states - 1
-        for name, c, below in self.crossings:
-            weight = multiplier(name) * (factor // below) * self.units[last]
+        for name, c, divisor in self.crossings:
+            weight = multiplier(name) * (factor // divisor) * self.units[last]
             form = with_crossing(form, last, [weight * entry for entry in c])
         for name, row, other in self.products:
             weight = -factor * multiplier(name)
@@ -153,14 +153,14 @@ class Step:
         below = [b**2 for *_, b in self.errors] + [b for *_, b in self.crossings]
         below += [weight.denominator for weight in self.weights]
         factor = lcm(q * self.over, *below)
-        more = factor // (q * self.over)
+        scale = factor // (q * self.over)
         FM, more_states = multiply(F, self.rows), len(self.units) - len(F)
         FM += [[0] * len(self.units) for _ in range(more_states)]
-        own = [[*row, *[0] * more_states] for row in F] + FM[len(F) :]
-        twice, kept = -more * q, more * p
+        square = [[*row, *[0] * more_states] for row in F] + FM[len(F) :]
+        double, share = -scale * q, scale * p
         form = [
-            [twice * (a + b) - kept * entry for a, b, entry in zip(*rows, strict=True)]
-            for rows in zip(FM, transpose(FM), own, strict=True)
+            [double * (a + b) - share * entry for a, b, entry in zip(*rows, strict=True)]
+            for rows in zip(FM, transpose(FM), square, strict=True)
         ]
         for i, weight in enumerate(self.weights, len(F)):
             form[i][i] = int(weight * factor) << log2
@@ -181,8 +181,8 @@ def map_step(
 
 def flow_step(where: str, mode: str, place: str, A: RationalMatrix) -> Step:
     """Return a flow that nothing acts on; A is of the derivative."""
-    n, over = len(A.numerators), A.denominator
-    return Step(where, mode, place, place, n, (1,) * n, A.numerators, over, is_flow=True)
+    n, denominator = len(A.numerators), A.denominator
+    return Step(where, mode, place, place, n, (1,) * n, A.numerators, denominator, is_flow=True)
 
 
 def grain_of(keeps: Fraction) -> int:
@@ -220,8 +220,8 @@ def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) 
         )
         yield inner
         if not flows:
-            made = f"where contact is made, mode {mode.name}"
-            yield replace(flight, where=made, target=CONTACT)
+            landing = f"where contact is made, mode {mode.name}"
+            yield replace(flight, where=landing, target=CONTACT)
             # The depth after landing is between zero and the last row. The function is convex in
             # it, so both ends suffice; at the surface it is this.
             surface = f"where contact is made at the surface, mode {mode.name}"
@@ -235,8 +235,8 @@ def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) 
 
 def _lagging(system: SwitchedSystem, step: Step, *, flows: bool) -> Iterator[Step]:
     """Yield the steps of a free mode while the deflection is positive and a force would pull."""
-    pulls = () if system.contact is None else system.contact.pulls
-    for k, q in enumerate(pulls, 1):
+    forces = () if system.contact is None else system.contact.pulls
+    for k, q in enumerate(forces, 1):
         (row,) = q.numerators
         force = [f * u for f, u in zip(row, step.units, strict=False)]
         pull = f"{PULL} {k}"
@@ -274,11 +274,11 @@ def _step(
     if flows:
         units, over = [1] * len(columns), lcm(*(d for _, d in columns))
     else:
-        least = [grain] * n + [weight.denominator for weight in acting.weights] + [1] * len(items)
+        grains = [grain] * n + [weight.denominator for weight in acting.weights] + [1] * len(items)
         units, over = (
             [
                 lcm(unit, d // gcd(d, *column), *(e // gcd(e, q[j]) for q, e in sizes))
-                for j, (unit, (column, d)) in enumerate(zip(least, columns, strict=True))
+                for j, (unit, (column, d)) in enumerate(zip(grains, columns, strict=True))
             ],
             1,
         )

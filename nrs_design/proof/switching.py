@@ -111,10 +111,10 @@ class Switching:
 
     def share_a_corner(self, names: Iterable[str]) -> bool:
         """Tell whether constant parameters may be at one corner while these modes are in force."""
-        at = self.corners_of()
-        if not at:
+        corners = self.corners_of()
+        if not corners:
             return True
-        found = [at.get(name, frozenset()) for name in names]
+        found = [corners.get(name, frozenset()) for name in names]
         return bool(frozenset.intersection(*found))
 
     @property
@@ -151,7 +151,7 @@ class Clock:
 
     @property
     def is_round(self) -> bool:
-        """Whether all it says is whose turn it is."""
+        """Whether it is a round, without an automaton."""
         return not self.ahead
 
     @property
@@ -167,8 +167,8 @@ class Clock:
 
     def kind_of(self, names: Iterable[str]) -> list[int]:
         """Return the kind of each mode, by its name."""
-        named = {name: k for k, own in enumerate((self.first, *self.more)) for name in own}
-        return [named.get(name, self.kinds[-1]) for name in names]
+        numbers = {name: k for k, group in enumerate((self.first, *self.more)) for name in group}
+        return [numbers.get(name, self.kinds[-1]) for name in names]
 
     def after(self, state: int, kind: int) -> int | None:
         """Return where a mode of a kind leads from a state; None where it may not be in force."""
@@ -191,5 +191,5 @@ def constants_words(switching: Switching) -> str:
     if not names:
         return "the constant parameters in their ranges"
     *first, last = names
-    listed = f"{', '.join(first)} and {last}" if first else last
-    return f"{listed} in {'their ranges' if first else 'its range'}"
+    text = f"{', '.join(first)} and {last}" if first else last
+    return f"{text} in {'their ranges' if first else 'its range'}"

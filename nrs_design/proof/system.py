@@ -35,7 +35,7 @@ class SwitchedSystem:
     sample_time: Fraction | None = None
     # Disturbances; statements about stability are about none of them.
     channels: tuple[Channel, ...] = ()
-    outputs: tuple[Output, ...] = ()  # What bounds can be stated for
+    outputs: tuple[Output, ...] = ()  # Quantities for which bounds can be stated
     # Errors of the arithmetic, in discrete time; a statement says whether it covers them.
     roundings: tuple[Rounding, ...] = ()
     # Which modes take turns, in discrete time; None lets all of them be in force at every step.
@@ -77,25 +77,25 @@ class SwitchedSystem:
 
         What disturbs it stays: the rows of roundings are over the states and all disturbances.
         """
-        kept = [mode.name in names for mode in self.every_mode]
-        flying = kept[len(self.modes) :]
+        mask = [mode.name in names for mode in self.every_mode]
+        flying = mask[len(self.modes) :]
         contact = self.contact
         if contact is not None:
             contact = replace(contact, free=tuple(compress(contact.free, flying)))
         roundings = (
             replace(
                 item,
-                columns=tuple(compress(item.columns, kept)),
-                rows=tuple(compress(item.rows, kept)),
+                columns=tuple(compress(item.columns, mask)),
+                rows=tuple(compress(item.rows, mask)),
             )
             for item in self.roundings
         )
         channels = (
-            replace(item, columns=tuple(compress(item.columns, kept))) for item in self.channels
+            replace(item, columns=tuple(compress(item.columns, mask))) for item in self.channels
         )
         return replace(
             self,
-            modes=tuple(compress(self.modes, kept)),
+            modes=tuple(compress(self.modes, mask)),
             contact=contact,
             clock=None,
             roundings=tuple(roundings),
@@ -155,22 +155,21 @@ class SwitchedSystem:
     def edges(self) -> list[Edge]:
         """Return the allowed switches from one mode to another, one for each way to switch."""
         transitions = self.switching.transitions
-        allowed = None if transitions is None else frozenset(transitions)
+        pairs = None if transitions is None else frozenset(transitions)
         maps = self.switching.maps()
         return [
             Edge(source, target, map_)
             for source in self.modes
             for target in self.modes
-            if source.name != target.name
-            and (allowed is None or (source.name, target.name) in allowed)
+            if source.name != target.name and (pairs is None or (source.name, target.name) in pairs)
             for map_ in maps.get((source.name, target.name), [None])
         ]
 
     def stays(self) -> dict[str, Stay]:
         """Return how long each mode stays active; in discrete time at least one step."""
-        own = {name: self._at_least_a_step(stay) for name, stay in self.switching.stays}
+        limits = {name: self._at_least_a_step(stay) for name, stay in self.switching.stays}
         common = self._at_least_a_step(Stay(self.switching.dwell_time))
-        return {mode.name: own.get(mode.name, common) for mode in self.modes}
+        return {mode.name: limits.get(mode.name, common) for mode in self.modes}
 
     def _at_least_a_step(self, stay: Stay) -> Stay:
         if self.time is Time.CONTINUOUS or stay.shortest >= 1:

@@ -132,7 +132,7 @@ class Entries:
 def too_long() -> AssemblyError:
     """Return the error for a period that no enclosure fits."""
     return AssemblyError(
-        "a period is too long for the drive and its contact: it has too many of their "
+        "a period is too long for the drive and its contact: it spans too many of their "
         "time constants, or their ranges are too wide for an enclosure",
         remedy="sample with a shorter period, or narrow the ranges",
         at=("sampling", "period"),

@@ -69,7 +69,7 @@ def add_shape(package: Path) -> None:
         "last mode",
         Method.MODE_QUADRATIC,
         lambda f: f.system.switching.is_arbitrary and not f.is_continuous(),
-        _in("last_mode.search_last_mode"),
+        _load_lazily("last_mode.search_last_mode"),
     ),
 """
     insert(package / "search" / "ladder.py", '    Rung(\n        "periodic quadratic",', rung)

@@ -58,9 +58,9 @@ def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
     """Put doubts about sizes before advice on gains: a wrong unit is the likelier cause."""
     from nrs_design.spec.plausible import doubt_sizes
 
-    for at, text in doubt_sizes(loaded.spec):
+    for keys, text in doubt_sizes(loaded.spec):
         if text not in (error.remedy or ""):
-            place = loaded.place(*at)
+            place = loaded.place(*keys)
             alternative = f" Otherwise, {error.remedy}" if error.remedy else ""
             error.remedy = f"first, line {place.line}: {text}{alternative}"
 

@@ -16,7 +16,7 @@ class Channel:
     name: str
     unit: str
     bound: Fraction  # Largest size at every time; in discrete time, at every step
-    # Shape (n, 1). B of every mode in contact, then of every free mode.
+    # Shape (n, 1). B of every mode, then of every free mode.
     columns: tuple[RationalMatrix, ...]
 
 
@@ -37,7 +37,7 @@ class Rounding:
     """An error r of an operation of the law: ``x+ = A x + B d + C r``, ``|r| <= |q (x, d)|``."""
 
     name: str  # Rounded operation, such as ``Kp e``
-    # Shape (n, 1). C of every mode in contact, then of every free mode.
+    # Shape (n, 1). C of every mode, then of every free mode.
     columns: tuple[RationalMatrix, ...]
     # Shape (1, n + number of channels). The q of every mode, and after them those of the free
     # modes, over the state and all disturbances of the system; in free motion nothing in them

@@ -16,11 +16,7 @@ Leads: TypeAlias = tuple[int | None, ...]
 def on_turn(system: SwitchedSystem, clock: Clock, kind: int) -> SwitchedSystem:
     """Return a system whose modes take turns with the modes of one kind alone."""
     names = [mode.name for mode in system.every_mode]
-    selection = (
-        name
-        for name, mode_kind in zip(names, clock.kind_of(names), strict=True)
-        if mode_kind == kind
-    )
+    selection = (name for name, k in zip(names, clock.kind_of(names), strict=True) if k == kind)
     return system.only(frozenset(selection))
 
 

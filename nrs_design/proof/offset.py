@@ -44,10 +44,8 @@ def offset_steps(
         tuple(map(system.channels.index, channels)), (Fraction(0),) * len(channels), rounding
     )
     for step in steps_of(_with_one(system), acting, grain, lost=True):
-        touchdown = (
-            step.source == FREE and step.target == CONTACT and len(step.rows) <= system.order
-        )
-        if step.time and not touchdown:
+        lands = step.source == FREE and step.target == CONTACT and len(step.rows) <= system.order
+        if step.time and not lands:
             yield replace(step, crossings=(), products=tuple(_products(step, len(channels))))
 
 

@@ -24,7 +24,7 @@ class CutOff:
     # Quantity, such as ``velocity command`` in ``rad/s``.
     name: str
     unit: str
-    limit: Fraction  # Largest size of the signal
+    limit: Fraction  # The signal is cut off at plus and minus this
     # Shape (n, 1). What it does to the state, in every mode and after them in the free modes.
     columns: tuple[RationalMatrix, ...]
     # Shape (1, n + number of signals before it). The q in the same order; in free motion nothing in

@@ -135,16 +135,16 @@ def steps_of_stays(
     flows, durations = system.time is Time.CONTINUOUS, system.stays()
     for mode in system.modes:
         if mode.name not in stays.leaving:
-            location = f"in mode {mode.name}"
+            description = f"in mode {mode.name}"
             if flows:
-                yield flow_step(location, mode.name, mode.name, mode.A)
+                yield flow_step(description, mode.name, mode.name, mode.A)
             else:
-                yield map_step(location, mode.name, (mode.name, mode.name), mode.A, grain(1))
+                yield map_step(description, mode.name, (mode.name, mode.name), mode.A, grain(1))
     for edge in system.edges():
         name, stay = edge.source.name, durations[edge.source.name]
         left = name in stays.leaving
-        duration = "some stay" if left else "the dwell time"
-        location = f"after {duration}, from {name} to {edge.target.name}"
+        stay_text = "some stay" if left else "the dwell time"
+        description = f"after {stay_text}, from {name} to {edge.target.name}"
         if not flows:
             last = stay.longest if left and stay.longest is not None else stay.shortest
             for count in range(int(stay.shortest), int(last) + 1):
@@ -152,14 +152,16 @@ def steps_of_stays(
                 if edge.map is not None:
                     rows = rational_product(edge.map.fractions(), jump.fractions())
                     jump = RationalMatrix.from_rows(rows)
-                yield map_step(location, name, (name, edge.target.name), jump, grain(count), count)
+                yield map_step(
+                    description, name, (name, edge.target.name), jump, grain(count), count
+                )
         elif left and stay.longest is not None:
             width = (stay.longest - stay.shortest) / stays.pieces
             for k in range(stays.pieces):
                 begin = stay.shortest + k * width
-                yield EnclosedStep(location, edge, begin, begin + width)
+                yield EnclosedStep(description, edge, begin, begin + width)
         elif stay.shortest > 0:
-            yield EnclosedStep(location, edge, stay.shortest, stay.shortest)
+            yield EnclosedStep(description, edge, stay.shortest, stay.shortest)
         else:
             jump = edge.map or identity(edge.source.A.shape[0])
             moment = f"at the switch from {name} to {edge.target.name}"

@@ -35,7 +35,7 @@ class Rubber(AbstractLinearLaw):
     takes_velocity: ClassVar[bool] = True
     keys: ClassVar[tuple[str, ...]] = ("stiffness", "damping")
     front: ClassVar[str] = "k"
-    beside: ClassVar[str] = "b"
+    parallel_damping: ClassVar[str] = "b"
     sentences: ClassVar[Mapping[str, str]] = MappingProxyType(
         {"tissue.rubber": "The damping of {environment} is in proportion to its stiffness."}
     )
@@ -44,7 +44,7 @@ class Rubber(AbstractLinearLaw):
     b: Number
 
     @classmethod
-    def assumptions(cls, environment: str, *, alone: bool) -> Iterator[Assumption]:
+    def assumptions(cls, environment: str, *, is_only: bool) -> Iterator[Assumption]:
         """Yield that stiffness and damping go together."""
         yield Assumption.create("tissue.rubber", environment=environment)
 

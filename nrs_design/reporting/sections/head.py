@@ -194,11 +194,9 @@ def _proved(result: Result) -> str:
     briefs = {s.shows: brief for s, brief in reversed(result.briefs)}
     assumes_contact = any(catalogue_kind(item).id == CONTACT_KEPT for item in system.assumptions)
     bounds_immediately = evidence is None or evidence.bounds_at_once
-    exact = evidence is None or not evidence.covers_rounding
     notes = (
         (", as long as contact is kept", assumes_contact and system.contact is None),
         (", up to one constant factor", not bounds_immediately),
-        (", for a law computed without rounding", bool(system.roundings) and exact),
         (", for all values in the declared ranges", has_ranges),
     )
     saturated, bounded = system.saturation is not None, Shows.BOUND in briefs

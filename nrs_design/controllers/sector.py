@@ -55,8 +55,8 @@ class Sector:
         else:
             k = factor * self.low
             gain, lever = 1 / k - 1 / self.low, 1 / k - 1 / self.high
-        # The last sample in free motion locates a surface that does not move at contact. Otherwise
-        # the first sample with certain contact locates the surface.
+        # The other sample is the last one in free motion if the surface stays where that shows it,
+        # else the first one with certain contact.
         if factor > 1 and self.surface != "touched" and not self.contact_maintained:
             return (self.noise() + rounding + travel) / gain
         minimum_torque = k * travel + (0 if self.contact_maintained else 2 * self.torque_noise)

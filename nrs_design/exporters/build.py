@@ -138,20 +138,20 @@ def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | N
 
 def _timing(spec: InteractionDesignSpec) -> str | None:
     """Say when commands take effect, and which are missed; None for every sample, at once."""
-    sampling, sentences = spec.sampling, []
+    sampling, texts = spec.sampling, []
     if sampling is None:
         return None
     if spec.late_at is not None:
         first, last = map(exact_text, spec.late)
         delay_text = f"{first} s" if first == last else f"{first} s to {last} s"
-        sentences.append(f"commands take effect {delay_text} after their sample")
+        texts.append(f"commands take effect {delay_text} after their sample")
         if sampling.jitter is not None:
             unsteady = exact_text(sampling.unsteady)
-            sentences[0] += f", and a period is up to {unsteady} s longer or shorter"
+            texts[0] += f", and a period is up to {unsteady} s longer or shorter"
     if (misses := sampling.misses) is not None:
         instead = "the command before is held" if misses.command == "hold" else "the command is 0"
-        sentences.append(f"at most {misses} may be missed: no step is made then, and {instead}")
-    return "; ".join(sentences) or None
+        texts.append(f"at most {misses} may be missed: no step is made then, and {instead}")
+    return "; ".join(texts) or None
 
 
 def _gains(design: ControllerDesign, name: str) -> tuple[Gain, ...]:

@@ -32,7 +32,7 @@ from nrs_design.models.linear_form import ONE, ZERO, LinearForm
 
 DELTA, HELD_COMMAND = "delta [rad]", "u held"
 # Rows of the states of a drive and of the joint motion. The columns are the states, the deflection,
-# the command in force at the begin of a period, and later changes of the command.
+# the command in force at the start of a period, and later changes of the command.
 Rows = Mapping[str, tuple[Fraction, ...]]
 # Stiffness and damping of what a force sample shows.
 Contact = tuple[Fraction, Fraction]

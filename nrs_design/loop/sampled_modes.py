@@ -76,7 +76,7 @@ class Modes:
         """Yield the modes of a controller in each of its contacts, or in all if it names none."""
         contacts = tuple(e for name in c.contacts for e in self.environments if e.name == name)
         if not contacts:
-            # Contact changes the mode only if the motor or a later sample shows the force.
+            # Free motion is a mode of its own only if a later sample or the motor feels the force.
             medium = FREE if self.loop.shown_later or self._loaded else ""
             yield from self._combine(c.name, (c.name,), law, medium=medium)
             contacts = self.environments if medium else ()

@@ -19,9 +19,7 @@ class MotionLoop:
     # numerator, denominator: coefficients, highest power first.
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
-    is_stated: bool = (
-        False  # Stated by the spec, instead of following from actuator and motion gains
-    )
+    is_stated: bool = False  # By the spec; else it follows from actuator and motion gains
 
     @property
     def delay(self) -> Fraction:

@@ -159,10 +159,10 @@ def packed(entries: Mapping[str, bytes]) -> bytes:
 
 def wrapper_text(program: Program) -> str:
     """Return the C around a law; numbers are rounded where the law takes them."""
-    description = (*program.description, "It makes a model by FMI 2.0 of the law.")
+    header = (*program.description, "It makes a model by FMI 2.0 of the law.")
     return fill_template(
         f"{_WRAPPER}.j2",
-        comment=block_comment(description, C_SOURCE),
+        comment=block_comment(header, C_SOURCE),
         names=program.names,
         law=program.law,
         variables=variables_of(program.law),
